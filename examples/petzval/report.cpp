@@ -7,6 +7,7 @@
 //   petzval report data/lenses/double_gauss_100mm_f1.35.json --out out --fields 0,6,12 --f-number 2
 #include "commands.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -31,8 +32,9 @@ namespace {
 
 struct Options {
   examples::LensInput lens_file;
-  double wavelength_nm = petzval::d_line_nm, subject_mm = 0;
-  bool wavelength_given = false, subject_given = false, json = false;
+  std::vector<double> wavelengths_nm;  // empty: of the file
+  double subject_mm = 0;
+  bool subject_given = false, json = false;
   double f_number = 0;  // 0: wide open
   examples::FocusFlags focus;
   std::string film, out_folder;
@@ -54,8 +56,11 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
     subject.distance_mm = design.object_distance_mm;
   }
   subject.film_of_file = options.film == "file" || (options.film.empty() && !options.subject_given);
-  if (options.wavelength_given) {
-    subject.light = {.wavelengths_nm = {options.wavelength_nm}, .weights = {1}, .primary_nm = options.wavelength_nm};
+  if (const auto& nm = options.wavelengths_nm; !nm.empty()) {
+    const auto from_d = [](double wavelength) { return std::abs(wavelength - petzval::d_line_nm); };
+    subject.light = {.wavelengths_nm = nm,
+                     .weights = std::vector<double>(nm.size(), 1),
+                     .primary_nm = *std::ranges::min_element(nm, {}, from_d)};
   } else {
     subject.light = examples::light_of(file);
   }
@@ -131,7 +136,7 @@ void write_page(const examples::Report& report, const Options& options) {
   const auto write = [&](const std::string& ending, const std::string& text) {
     const auto file = folder / (report.loaded.id + ending);
     examples::write_text(file, text);
-    std::cout << file.string() << '\n';
+    (options.json ? std::cerr : std::cout) << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
   write(".html", examples::lens_page(report, lens, figures, light));
@@ -152,7 +157,7 @@ int commands::report(int argc, char** argv) {
       "LENS_focus.svg, LENS_mtf.svg, "
       "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg, with coatings "
       "LENS_transmittance.svg and LENS_transmittance_field.svg, and LENS.html, a page with all of them, to DIR, and "
-      "prints their paths instead.",
+      "prints their paths instead; with --json on standard error.",
       "petzval report");
   examples::add_lens(app, options.lens_file);
   app.add_option(
@@ -160,11 +165,10 @@ int commands::report(int argc, char** argv) {
          [&options](const std::string& text) { options.lens_file.first_surface_number = text == "1" ? 1 : 0; },
          "number of the first surface in the report; patents count from 1")
       ->one_of({"0", "1"})
-      ->default_str("0");
+      ->default_str("1 for files of OpticStudio, CODE V, OSLO and tables, else 0");
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
-  const auto* wavelength =
-      examples::add_wavelength(app, "--wavelengths", options.wavelength_nm, "wavelength")
-          ->default_str("wavelengths of the file, else F, d and C; numbers at the primary wavelength");
+  examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm, "wavelengths")
+      ->default_str("wavelengths of the file, else F, d and C; numbers at the primary one, the nearest to d of a list");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "f-number to stop the lens down to")
       ->default_str("wide open");
@@ -178,17 +182,12 @@ int commands::report(int argc, char** argv) {
   const auto* fields = examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                                              "fields of --out, --json and transmittances (degrees)")
                            ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
-  out->excludes("--json");
-
   return examples::run(app, argc, argv, [&] {
-    options.wavelength_given = wavelength->given();
     options.subject_given = subject->given();
     const examples::Report report = report_of(options);
-    if (out->given()) return write_page(report, options);
-    if (options.json) {
-      std::cout << to_json(report, options);
-      return;
-    }
+    if (out->given()) write_page(report, options);
+    if (options.json) std::cout << to_json(report, options);
+    if (out->given() || options.json) return;
     const bool modelled = !options.coatings.empty() || petzval::states_coatings(report.loaded.lens);
     const auto light = modelled ? light_of(report, colours_of(report, options), options) : std::nullopt;
     if (fields->given() && !light) {

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "html_page.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
@@ -21,21 +23,6 @@
 
 namespace examples {
 namespace {
-
-constexpr std::string_view style =
-    R"(  body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; font: 16px/1.55 system-ui, sans-serif;
-         color: #1d2026; background: #fbfbfa; }
-  h1 { font-size: 1.8rem; margin: 0 0 .3rem; }
-  h2 { font-size: 1.2rem; margin: 2.6rem 0 .4rem; border-top: 1px solid #dcdcd8; padding-top: 1.2rem; }
-  .lead, figcaption { color: #565b66; max-width: 46rem; }
-  figure { margin: .8rem 0 0; }
-  figure svg { display: block; max-width: 100%; height: auto; border: 1px solid #dcdcd8; background: #fff; }
-  figcaption { font-size: .93rem; margin-top: .5rem; }
-  .scroll { overflow-x: auto; }
-  table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; }
-  th, td { text-align: left; vertical-align: top; padding: .25rem .8rem .25rem 0; border-bottom: 1px solid #e6e6e2; }
-  td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-)";
 
 /// Writes one row per number and one column per meridian.
 void first_order_table(std::ostream& html, const Report& r) {
@@ -115,12 +102,13 @@ void surface_table(std::ostream& html, const Report& r) {
   html << "</table></div>\n";
 }
 
-/// One row of a table, with numbers aligned to the right.
+/// One row of a table, with numbers aligned to the right; a dash for NaN.
 void number_row(std::ostream& html, const std::string& first, std::span<const double> values, int digits) {
   html << "<tr><td>" << first << "</td>";
   constexpr double rounding = 1e-9;  // shown as 0
   for (const double value : values) {
-    html << "<td class=\"number\">" << number(std::abs(value) < rounding ? 0 : value, digits) << "</td>";
+    html << "<td class=\"number\">"
+         << (std::isnan(value) ? "\u2013" : number(std::abs(value) < rounding ? 0 : value, digits)) << "</td>";
   }
   html << "</tr>\n";
 }
@@ -136,11 +124,14 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
   if (!r.main().pupils) return;
   html
       << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
-         "ratio (0 beyond half a wave) are about the image point with the smallest RMS. Zernike coefficients in fringe "
+         "ratio are about the image point with the smallest RMS; a dash stands beyond half a wave, where an image has "
+         "no "
+         "single peak. Zernike coefficients in fringe "
          "order, in the unit circle of the stop: defocus Z4, astigmatism Z5, coma Z8, spherical aberration Z9. All 37 "
          "are in the output of "
-         "--json. Error: of the first RMS, by the number of rays.</p>\n";
-  head_row(html, {"field", "wavelength", "RMS", "RMS without tilt", "Strehl", "Z4", "Z5", "Z8", "Z9", "error"});
+         "--json. Errors: of the first RMS and of the Strehl ratio, by the number of rays.</p>\n";
+  head_row(html,
+           {"field", "wavelength", "RMS", "error", "RMS without tilt", "Strehl", "error", "Z4", "Z5", "Z8", "Z9"});
   const auto fronts = report_wavefronts(r, colours);
   const auto& nm = colours.wavelengths_nm();
   for (std::size_t k = 0; k < fronts.size(); ++k) {
@@ -151,11 +142,12 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
       continue;
     }
     const petzval::Wavefront& front = *fronts[k];
-    number_row(
-        html, field,
-        std::array{nm[k % nm.size()], front.rms_waves, front.rms_without_tilt, front.strehl.value_or(0),
-                   front.zernike[3], front.zernike[4], front.zernike[7], front.zernike[8], front.sampling_error_waves},
-        4);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    number_row(html, field,
+               std::array{nm[k % nm.size()], front.rms_waves, front.sampling_error_waves, front.rms_without_tilt,
+                          front.strehl.value_or(none), front.strehl ? front.strehl_error : none, front.zernike[3],
+                          front.zernike[4], front.zernike[7], front.zernike[8]},
+               4);
   }
   html << "</table></div>\n";
 }
@@ -189,6 +181,7 @@ void light_table(std::ostream& html, const LightReport& light) {
   html << "<h2>Light</h2>\n<p class=\"lead\">The fraction of unpolarised light that the lens passes, mean over the "
           "pupil; "
        << escaped_html(coatings_in_words(light)) << '.';
+  if (const std::string words = t_stop_in_words(light); !words.empty()) html << ' ' << words << '.';
   if (light.colour) {
     for (const std::string& words : colour_in_words(*light.colour)) html << ' ' << words << '.';
   }
@@ -438,17 +431,17 @@ std::string lens_page(const Report& r, const petzval::Lens& colours, const std::
   html << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
        << name << "</title>\n<style>\n"
-       << style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
+       << page_style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
        << escaped_html(r.loaded.prescription.source_design) << "</p>\n<p class=\"lead\">"
        << escaped_html(conditions(r.subject)) << "</p>\n";
-  for (const LensFigure& figure : figures) {
-    html << "<h2>" << figure.title << "</h2>\n<figure>\n"
-         << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";
-  }
   html << "<h2>First order</h2>\n<p class=\"lead\">At " << number(lens.wavelengths_nm()[0])
        << " nm. Stop: " << stop_in_words(r) << "; " << numbering_in_words(r)
        << ". z counts from the first vertex towards the film.</p>\n";
   first_order_table(html, r);
+  for (const LensFigure& figure : figures) {
+    html << "<h2>" << figure.title << "</h2>\n<figure>\n<div class=\"scroll\">" << figure.svg << "</div><figcaption>"
+         << figure.caption << "</figcaption>\n</figure>\n";
+  }
   wavefront_table(html, r, colours);
   third_order_table(html, r, colours);
   if (light) light_table(html, *light);
@@ -468,7 +461,7 @@ std::string lens_page(const Report& r, const petzval::Lens& colours, const std::
   html << "<h2>Sources</h2>\n";
   sources(html, r.loaded.prescription);
   html << "</body>\n</html>\n";
-  return std::move(html).str();
+  return with_contents(std::move(html).str());
 }
 
 }  // namespace examples

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "petzval/analysis/aberrations.hpp"
+#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -23,13 +24,16 @@ namespace {
 MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian) {
   MeridianReport r{meridian, petzval::first_order(lens, 0, meridian), std::nullopt, {}};
   const petzval::FirstOrder& first = r.first_order;
-  r.entries = {{"effective_focal_length_mm", "effective focal length", "mm", first.effective_focal_length},
-               {"back_focal_distance_mm", "back focal distance (last vertex to rear focal point)", "mm",
-                first.back_focal_distance},
-               {"front_focal_distance_mm", "front focal distance (first vertex to front focal point)", "mm",
-                first.front_focal_distance},
-               {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
-               {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
+  const bool in_air = std::abs(std::abs(first.image_index) - 1) < 0.01;  // also with the index of air
+  r.entries = {
+      {"effective_focal_length_mm", in_air ? "effective focal length" : "effective focal length in air (1 / power)",
+       "mm", first.effective_focal_length},
+      {"back_focal_distance_mm", "back focal distance (last vertex to rear focal point)", "mm",
+       first.back_focal_distance},
+      {"front_focal_distance_mm", "front focal distance (first vertex to front focal point)", "mm",
+       first.front_focal_distance},
+      {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
+      {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
 
   // Without a rim that limits the beam there are no pupils.
   if (petzval::has_pupils(lens)) {
@@ -42,14 +46,11 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
                       {"exit_pupil_z_mm", "exit pupil, z", "mm", exit.z},
                       {"exit_pupil_diameter_mm", "exit pupil, diameter", "mm", exit.diameter}});
     if (meridian == petzval::main_meridian(lens)) {
-      r.entries.insert(
-          r.entries.end(),
-          {{"f_number", "f-number, paraxial (EFL / that diameter)", "", petzval::paraxial_f_number(lens)},
-           {"f_number_real", "f-number by the exact ray to the rim of the stop", "", petzval::real_f_number(lens)}});
-    } else {
-      r.entries.push_back({"f_number", "f-number, paraxial (EFL / that diameter)", "",
-                           std::abs(first.effective_focal_length) / entrance.diameter});
+      r.entries.push_back(
+          {"f_number", "f-number (exact ray to the rim of the stop)", "", petzval::aperture_state(lens).f_number});
     }
+    r.entries.push_back({"f_number_paraxial", "f-number, paraxial (EFL / entrance pupil)", "",
+                         std::abs(first.effective_focal_length) / entrance.diameter});
   }
   r.entries.push_back({"petzval_sum_per_mm", "Petzval sum", "1/mm", first.petzval_sum});
   return r;
@@ -91,7 +92,7 @@ Json numbers(const MeridianReport& r) {
   Json json{{"afocal", r.first_order.afocal}};
   for (const char* key :
        {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm", "exit_pupil_diameter_mm", "f_number",
-        "f_number_real", "declared_entrance_pupil_diameter_mm", "declared_f_number"}) {
+        "f_number_paraxial", "declared_entrance_pupil_diameter_mm", "declared_f_number"}) {
     json[key] = nullptr;
   }
   for (const Entry& entry : r.entries) json[entry.key] = finite_or_null(entry.value);
@@ -137,6 +138,15 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
   return json;
 }
 
+/// 32768; fewer for lenses of more than 512 surfaces, so that their reports take seconds. The sampling errors grow
+/// accordingly.
+std::uint32_t rays_per_spot(const petzval::Lens& lens) {
+  constexpr std::size_t most_hits = 1 << 24;  // rays times surfaces
+  std::uint32_t rays = 32768;
+  while (rays > 256 && rays * lens.surface_count() > most_hits) rays /= 2;
+  return rays;
+}
+
 /// Wavefront errors at the fields and wavelengths of the report.
 Json wavefronts(const Report& r, const petzval::Lens& colours) {
   Json json = Json::array();
@@ -151,6 +161,7 @@ Json wavefronts(const Report& r, const petzval::Lens& colours) {
     one["rms_without_tilt_waves"] = value(&petzval::Wavefront::rms_without_tilt);
     one["peak_to_valley_waves"] = value(&petzval::Wavefront::peak_to_valley_waves);
     one["strehl"] = front && front->strehl ? Json(*front->strehl) : Json();
+    one["strehl_error"] = front && front->strehl ? finite_or_null(front->strehl_error) : Json();
     one["zernike_fringe"] = front ? Json(front->zernike) : Json();
     one["zernike_residual_waves"] = value(&petzval::Wavefront::zernike_residual_waves);
     one["sampling_error_waves"] = value(&petzval::Wavefront::sampling_error_waves);
@@ -209,6 +220,7 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                      {"frequency_per_mm", point.frequency_per_mm},
                      {"tangential", dark ? Json() : Json(point.tangential)},
                      {"sagittal", dark ? Json() : Json(point.sagittal)},
+                     {"sampling_error", point.sampling_error},
                      {"diffraction_limit", limit}});
     }
     for (const petzval::MtfPoint& point : report_mtf_over_field(r, colours)) {
@@ -242,13 +254,12 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                               {"tangential_mm", or_null(focus.tangential_mm)},
                               {"sagittal_mm", or_null(focus.sagittal_mm)}});
     }
-    for (const auto& by_wavelength : petzval::chromatic_aberration(colours, z, fields).lateral) {
-      const double field = degrees[lateral.size() / by_wavelength.size()];
-      for (std::size_t w = 0; w < by_wavelength.size(); ++w) {
-        lateral.push_back({{"field_deg", field},
-                           {"wavelength_nm", colours.wavelengths_nm()[w]},
-                           {"chief_ray_shift_um", um(by_wavelength[w])}});
-      }
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+      const auto &own = spots[i].chief_ray_height,
+                 &primary = spots[i - i % nm.size() + colours.primary_wavelength()].chief_ray_height;
+      lateral.push_back({{"field_deg", degrees[i / nm.size()]},
+                         {"wavelength_nm", nm[i % nm.size()]},
+                         {"chief_ray_shift_um", own && primary ? um(*own - *primary) : Json()}});
     }
     json = {{"ray_fans", fans},
             {"field_curvature", foci},
@@ -297,16 +308,17 @@ std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r
   const double z = subject_z(r.subject, colours);
   petzval::parallel_for(result.size(), 1, examples::threads(), [&](std::size_t k, std::size_t) {
     const petzval::FieldPoint point{.field_rad = petzval::radians(r.subject.fields.degrees[k / count]), .z = z};
-    result[k] = petzval::wavefront(colours, point, {.wavelength = k % count});
+    const std::size_t directions = rays_per_spot(colours) < 32768 ? 12 : 48;
+    result[k] = petzval::wavefront(colours, point, {.wavelength = k % count, .directions = directions});
   });
   return result;
 }
 
 std::vector<petzval::Spot> report_spots(const Report& r, const petzval::Lens& colours) {
-  constexpr std::uint32_t rays = 32768;
   std::vector<double> fields;
   for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
-  return petzval::spot_diagram(colours, subject_z(r.subject, colours), fields, rays, examples::threads());
+  return petzval::spot_diagram(colours, subject_z(r.subject, colours), fields, rays_per_spot(colours),
+                               examples::threads());
 }
 
 std::vector<petzval::MtfPoint> report_mtf(const Report& r, std::span<const petzval::Spot> spots) {
@@ -318,7 +330,7 @@ std::vector<petzval::MtfPoint> report_mtf(const Report& r, std::span<const petzv
 
 std::vector<petzval::MtfPoint> report_mtf_over_field(const Report& r, const petzval::Lens& colours) {
   constexpr int steps = 10;
-  constexpr std::uint32_t rays = 4096;
+  const std::uint32_t rays = rays_per_spot(colours) / 8;
   constexpr std::array frequencies{10.0, 20.0, 40.0};
   const double largest = largest_field(r.subject, colours).field_rad;
   if (largest == 0) return {};
@@ -521,19 +533,17 @@ std::string to_text(const Report& r) {
            << '\n';
     }
   }
-  if (!lens.missing_glasses().empty()) text << "\nmedia without a glass in the tables:\n";
+  std::string missing;
   for (std::size_t space = 1; space <= lens.surface_count(); ++space) {
     const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
     if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;
     if (petzval::glass_of(medium, r.loaded.glasses) || !medium.nd) continue;
-    text << "  surface " << r.surface_number(space - 1) << ": " << medium.glass.value_or("a glass without a name")
-         << ", n_d " << number(*medium.nd, 7);
-    if (medium.vd) text << ", V_d " << number(*medium.vd, 4);
-    for (const petzval::Glass* nearest : petzval::nearest_glasses(r.loaded.glasses, *medium.nd, medium.vd, 1)) {
-      text << "; the nearest is " << nearest->name << " (" << nearest->catalogue << ", " << number(nearest->nd, 7)
-           << ", " << number(nearest->vd, 4) << ")";
-    }
-    text << "; --glasses FILE adds a catalogue\n";
+    missing += (missing.empty() ? "" : ", ") + std::to_string(r.surface_number(space - 1));
+    if (medium.glass) missing += " (" + *medium.glass + ")";
+  }
+  if (!missing.empty()) {
+    text << "\nmedia without a glass in the tables, after surfaces " << missing
+         << "\n  --match-glasses takes the nearest glasses, --glasses FILE adds a catalogue\n";
   }
   text << "\nlint: " << (r.findings.empty() ? "no findings" : "") << '\n';
   for (const petzval::Finding& finding : r.findings) {

@@ -2,9 +2,11 @@
 #include "load_lens.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -159,7 +161,10 @@ LensFile read_lens(const LensInput& input) {
   std::string id = lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
-  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number,
+  constexpr std::array<std::string_view, 5> formats_from_1{"zemax", "codev", "oslo", "opticalbench", "table"};
+  const bool from_1 =
+      prescription.imported && std::ranges::find(formats_from_1, prescription.imported->format) != formats_from_1.end();
+  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number.value_or(from_1),
           std::move(read.whole)};
 }
 

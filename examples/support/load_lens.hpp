@@ -15,11 +15,11 @@ namespace examples {
 
 /// The options of a command line about a lens.
 struct LensInput {
-  std::string file{};                      ///< path of a lens in any format of read_lens()
-  std::vector<std::string> glass_files{};  ///< searched before the tables of petzval
-  std::string configuration{};             ///< a name or a number from 0; empty: the first
-  bool match_glasses = false;              ///< media without a name get the nearest glass
-  int first_surface_number = 0;            ///< number of the first surface in texts; patents count from 1
+  std::string file{};                         ///< path of a lens in any format of read_lens()
+  std::vector<std::string> glass_files{};     ///< searched before the tables of petzval
+  std::string configuration{};                ///< a name or a number from 0; empty: the first
+  bool match_glasses = false;                 ///< media without a name get the nearest glass
+  std::optional<int> first_surface_number{};  ///< number of the first surface in texts; nullopt: as the file counts
 };
 
 /// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
@@ -53,7 +53,7 @@ struct LensFile {
   std::string id;  ///< file name without extension, and configuration; prefix of output files
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
-  int first_surface_number = 0;   ///< as in LensInput
+  int first_surface_number = 0;   ///< of LensInput, else 1 for formats in which the first surface is number 1
   petzval::Prescription whole{};  ///< with all configurations
 };
 
