@@ -463,6 +463,7 @@ std::string words_of_results(int argc, char** argv) {
 
 int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   const auto fail = [&app](const char* what) {
+    hide_progress();
     const bool red = coloured(STDERR_FILENO);
     std::cerr << (red ? "\033[31m" : "") << app.app_->get_name() << ": " << one_line(what) << (red ? "\033[0m" : "")
               << '\n';

@@ -74,6 +74,7 @@ void rename(const std::filesystem::path& file, const std::filesystem::path& new_
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error, unknown;
+  clean_on_signals(folder, false);
   for (auto part = folder; !part.empty() && !std::filesystem::exists(part, unknown) && !unknown;
        part = part.parent_path()) {
     clean_on_signals(part, true);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupt.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <iostream>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -47,7 +47,9 @@ State& state = *new State;
   std::ranges::sort(state.made, std::ranges::greater(), [](const fs::path& made) { return made.native().size(); });
   for (const fs::path& folder : state.made) rmdir(folder.c_str());  // fails unless the folder is empty
   hide_progress();
-  std::cerr << state.note << std::flush;
+  // std::cerr would first flush std::cout, which may block. A full pipe takes no note.
+  pollfd error{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+  if (poll(&error, 1, 0) == 1) static_cast<void>(!write(STDERR_FILENO, state.note.data(), state.note.size()));
   std::_Exit(interrupted_status);
 }
 

@@ -2,6 +2,7 @@
 // Ctrl-C and SIGTERM: status, files and folders of interrupted commands, and the line of progress on a terminal.
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -85,7 +86,8 @@ class Interrupts : public Programs {
         continue;
       }
       EXPECT_FALSE(entry.path().filename().string().starts_with(".petzval-")) << of << ": " << entry.path();
-      if (entry.path().extension() == ".json") EXPECT_FALSE(read_json(entry.path()).is_null()) << of;
+      if (entry.path().extension() != ".json") continue;
+      EXPECT_FALSE(read_json(entry.path()).is_null()) << of << ": " << entry.path();
     }
   }
 
@@ -123,6 +125,20 @@ TEST_F(Interrupts, CommandThatWaitsForAFileEnds) {
   ASSERT_EQ(mkfifo(path("lens.json").c_str(), 0666), 0);
   start({"report", path("lens.json")});
   EXPECT_EQ(interrupted(SIGINT), 130);
+}
+
+/// A command whose output nobody reads.
+TEST_F(Interrupts, CommandThatWritesToAFullPipeEnds) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_GE(fcntl(ends[1], F_SETPIPE_SZ, 4096), 4096);
+  const int size = fcntl(ends[1], F_GETPIPE_SZ);
+  start({"lenses", "--json"}, [&] { dup2(ends[1], STDOUT_FILENO); });
+  int bytes = 0;
+  EXPECT_TRUE(wait_for([&] { return ioctl(ends[0], FIONREAD, &bytes) == 0 && bytes == size; }));
+  EXPECT_EQ(interrupted(SIGINT), 130);
+  EXPECT_NE(read(path("err")).find("interrupted"), std::string::npos);
+  close(ends[0]), close(ends[1]);
 }
 
 TEST_F(Interrupts, UnfinishedFilesAndNewEmptyFoldersAreRemoved) {
