@@ -272,7 +272,8 @@ void render(std::vector<Subject> subjects, const Options& options, const petzval
                                                         options.formats, folder / stem)) {
           options.output.file(file);
         }
-        p.image.psf.counts = {};  // the sheet traces its own picture; many lenses and fields must fit into memory
+        // Sheets of rays trace their own pictures; many lenses and fields must fit into memory.
+        if (!p.waves) p.image.psf.counts = {};
         lenses.back() = to_json(std::span(subject.pictures).first(i + 1), loaded, options, controls);
         examples::write_text(numbers, report().dump(1) + '\n');
       }

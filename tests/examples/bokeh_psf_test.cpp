@@ -226,6 +226,67 @@ TEST_F(BokehPsf, AcceptsEveryModelWithWeights) {
       with({"--model", "thin", "--fields", "8"})["throughput"].get<double>(), 0.01);
 }
 
+TEST_F(BokehPsf, SeveralLensesAndFieldsHaveOneScaleAndOneTable) {
+  const std::vector<std::string> lenses{"double_gauss_52mm_f1.8", "planar_50mm_f1.4"};
+  const auto psf = [&](const Arguments& names, const std::string& fields, const std::string& out) {
+    Arguments arguments = names;
+    arguments.insert(arguments.end(), {"--at", "5m", "--focus", "2m", "--rays", "4096", "--fields", fields});
+    arguments.insert(arguments.end(), {"--format", "png", "--out", path(out)});
+    const Outcome outcome = run("psf", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    for (const auto& file : lines(outcome.out)) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    return lines(outcome.out).size();
+  };
+  EXPECT_EQ(psf(lenses, "0,10", "both"), 8u);  // pictures, two sheets, CSV, JSON
+  const auto both = read_json(path("both/bokeh.json"));
+  ASSERT_EQ(both["lenses"].size(), 2u);
+  const auto table = lines(read(path("both/bokeh.csv")));
+  ASSERT_EQ(table.size(), 5u);
+  const auto scale = both["lenses"][0]["results"][0]["picture_pixel_mm"];
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(both["lenses"][i]["fields_deg"], nlohmann::json({0.0, 10.0}));
+    const auto& results = both["lenses"][i]["results"];
+    ASSERT_EQ(results.size(), 2u);
+    psf({lenses[i]}, "10", "alone");
+    const auto alone = read_json(path("alone/") + lenses[i] + "_bokeh.json")["results"][0];
+    for (const char* key : {"field_deg", "throughput", "rms_radius_mm", "radius_mm", "centroid_mm", "film_z_mm"}) {
+      EXPECT_EQ(results[1][key], alone[key]) << lenses[i] << ' ' << key;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(results[k]["picture_pixel_mm"], scale);
+      EXPECT_GT(512 * scale.get<double>(), 2 * results[k]["radius_mm"].get<double>());
+      const std::string row = '"' + lenses[i] + "\"," + results[k]["field_deg"].dump() + ",2000.0,";
+      EXPECT_TRUE(table[1 + 2 * i + k].starts_with(row)) << table[1 + 2 * i + k];
+    }
+  }
+  expect_failure("psf", {lenses[0], lens(lenses[0]), "--at", "5m", "--focus", "2m", "--out", path("twice")},
+                 {"LENS", lenses[0]});
+}
+
+// Lights at 90 degrees and more have their distance along the ray; a far light equals a light at infinity.
+TEST_F(BokehPsf, FisheyeSeesLightsBesideItAtADistance) {
+  const std::string fisheye = "fisheye_6.3mm_f2.8";
+  const auto at = [&](const char* distance) {
+    EXPECT_EQ(run("psf", {fisheye, "--at", distance, "--focus", "1m", "--fields", "0,90,100,108", "--rays", "16384",
+                          "--format", "png", "--out", path(distance)})
+                  .status,
+              0);
+    return read_json(path(distance) + '/' + fisheye + "_bokeh.json")["results"];
+  };
+  const auto near = at("1m"), far = at("1km"), infinite = at("inf");
+  ASSERT_EQ(near.size(), 4u);
+  const auto throughput = [](const nlohmann::json& result) { return result.at("throughput").get<double>(); };
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(throughput(far[i]), throughput(infinite[i]), 2e-3);
+    EXPECT_NEAR(far[i]["centroid_mm"][1].get<double>(), infinite[i]["centroid_mm"][1].get<double>(), 1e-3);
+    EXPECT_NEAR(throughput(near[i]), throughput(infinite[i]), 0.15);
+  }
+  EXPECT_GE(throughput(near[1]), throughput(near[2]));
+  EXPECT_GE(throughput(near[2]), throughput(near[3]));
+  expect_failure("psf", {fisheye, "--at", "1mm", "--focus", "1m", "--fields", "100", "--out", path("inside")},
+                 {"--at", 1, 100});
+}
+
 TEST_F(BokehPsf, AcceptsAnImageAsIris) {
   petzval::RgbImage half(8, 8);  // the part at -x passes
   for (int y = 0; y < 8; ++y) std::fill_n(half.pixel(0, y), 12, 1.0f);
