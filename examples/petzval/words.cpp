@@ -70,7 +70,8 @@ bool print_help_on(const std::string& word) {
     const std::string name(command.name);
     std::string flags;  // without a task: the options that mention the word
     for (const examples::OptionText& option : help.options) {
-      const bool mentions = word.size() > 2 && plain(option.flag + option.help).find(plain(word)) != std::string::npos;
+      const bool mentions =
+          plain(word).size() > 2 && plain(option.flag + option.help).find(plain(word)) != std::string::npos;
       if (commands.empty() && mentions) flags += ' ' + option.flag;
     }
     if (flags.empty() && commands.find(' ' + name + ' ') == std::string::npos) return;

@@ -27,13 +27,13 @@ constexpr std::array all_groups{
     Group{"Picture", false,
           " --film --fov --size --width --columns --title --white-point --normalisation --exposure --frames --fps "
           "--travel "},
-    Group{"Work", false,
-          " --integrator --diffraction --wavelengths --spp --rays --noise --time --compare --compare-rays "},
+    Group{"Work", false, " --integrator --diffraction --wavelengths --spp --rays --noise --time --compare "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false,
           " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "
           "--precision --surfaces-from "},
-    Group{"Quality", true, " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above "},
+    Group{"Quality", true,
+          " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "},
     Group{"Depths", true, " --depth-kind --depth-unit --near --far --white "},
     Group{"Files", true, " --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,

@@ -108,6 +108,77 @@ TEST_F(Petzval, MistypedFlagGetsASuggestion) {
   expect_failure("spots", expanded({"LENS", "--out", "@out", "--feilds", "0"}), {"--feilds", "--fields"});
 }
 
+/// A mistyped flag is named before its consequence, a missing option.
+TEST_F(Petzval, FlagOfOtherProgramsGetsASuggestion) {
+  expect_failure("psf", expanded({"LENS", "--aperture", "2"}), {"--aperture", "mean --f-number?"});
+  expect_failure("focus", expanded({"LENS", "--focus", "1m"}), {"--focus", "mean --at?"});
+  expect_failure("render", expanded({"LENS", "--feilds=0"}), {"--feilds=0"});
+}
+
+TEST_F(Petzval, WordsOfUsersLeadToCommands) {
+  const auto all = commands();
+  static const std::regex line("(?:^|\n)petzval help ([a-z-]+)");
+  for (const char* word : {"mtf", "seidel", "aberrations", "dof", "bokeh", "blender", "nuke", "unreal", "zemax",
+                           "distortion", "t-stop", "MTF", "roundness"}) {
+    const Outcome help = run("petzval", {"help", word});
+    EXPECT_EQ(help.status, 0) << word;
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(help.out, found, line)) << word << ": " << help.out;
+    EXPECT_NE(std::ranges::find(all, found[1].str()), all.end()) << help.out;
+  }
+  EXPECT_EQ(run("petzval", {"help", "depth", "of", "field"}).out, run("petzval", {"help", "dof"}).out);
+  for (const char* word : {"", "---", "nosuchword"}) {
+    const Outcome help = run("petzval", {"help", word});
+    EXPECT_EQ(help.status, 2) << word;
+    EXPECT_EQ(help.out, "") << word;
+  }
+}
+
+/// The table of words.cpp has lines "words | commands | text". The commands exist and have the flags of the text.
+TEST_F(Petzval, TasksNameCommandsAndTheirFlags) {
+  const auto all = commands();
+  static const std::regex row(R"( ([^|]+) \| ([^|]+) \| (.+))"), flag("--[a-z-]+");
+  std::size_t count = 0;
+  for (const std::string& line : lines(read(std::string(PETZVAL_TEST_DATA) + "/../examples/petzval/words.cpp"))) {
+    std::smatch task;
+    if (!std::regex_match(line, task, row)) continue;
+    ++count;
+    const std::string word = task[1].str().substr(0, task[1].str().find(' ')), text = task[3];
+    const std::string shown = run("petzval", {"help", word}).out;
+    std::istringstream names(task[2].str());
+    std::string helps, first;
+    for (std::string name; names >> name;) {
+      if (first.empty()) first = name;
+      EXPECT_NE(std::ranges::find(all, name), all.end()) << line;
+      const Outcome help = run("petzval", {"help", name, "all"});
+      if (help.status != 0) return;  // not built
+      helps += help.out;
+      EXPECT_NE(shown.find("petzval help " + name), std::string::npos) << shown;
+    }
+    for (std::sregex_iterator found(text.begin(), text.end(), flag), end; found != end; ++found) {
+      EXPECT_NE(helps.find(found->str() + ' '), std::string::npos) << line << ": " << found->str();
+    }
+    const Outcome mistaken = run("petzval", {word, "double_gauss_52mm_f1.8"});
+    EXPECT_EQ(mistaken.status, 2) << word;
+    EXPECT_NE(mistaken.err.find("petzval " + first), std::string::npos) << mistaken.err;
+  }
+  EXPECT_GT(count, 15u);
+}
+
+TEST_F(Petzval, BashCompletesValues) {
+  write("completion.bash", run("petzval", {"--bash-completion"}).out);
+  const auto completed = [&](const std::string& words) {
+    write("complete.bash", "source '" + path("completion.bash") + "'\nCOMP_WORDS=(petzval " + words +
+                               ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_petzval\necho \"${COMPREPLY[*]}\"\n");
+    EXPECT_EQ(std::system(("bash '" + path("complete.bash") + "' > '" + path("completed") + "'").c_str()), 0);
+    return read(path("completed"));
+  };
+  EXPECT_EQ(completed("psf lens.json --criterion min"), "min_rms min_max\n");
+  EXPECT_EQ(completed("help psf"), "psf psf-set\n");
+  EXPECT_EQ(completed("psf --diff"), "--diffraction\n");
+  EXPECT_EQ(completed("ren"), "render\n");
+}
+
 TEST_F(Petzval, MistypedLensGetsASuggestion) {
   expect_failure("report", {"double_gauss_52mm_f1.9"}, {"double_gauss_52mm_f1.9", "double_gauss_52mm_f1.8"});
 }
