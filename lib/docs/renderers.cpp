@@ -9,6 +9,7 @@
 
 #include "petzval/analysis/choose_model.hpp"
 #include "petzval/fit/tilt_fit.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/petzval.hpp"
 
 namespace {
@@ -46,6 +47,14 @@ void first_camera() {
     if (r) irradiance += r.weight * radiance(r.ray) / 1024;
   }
   std::cout << "irradiance " << irradiance << ", f-number " << std::sqrt(std::numbers::pi / irradiance) / 2 << '\n';
+}
+
+void save(const Lens& lens) {
+  const Camera seven_blades(lens, film, {.bokeh = {.blades = 7}});
+  RgbImage picture(film.columns, film.rows);
+  picture.pixel(960, 640)[1] = 0.09f;              // green of column 960, row 640
+  write_exr(picture, "picture.exr");               // linear
+  write_png(to_srgb8(picture, 8), "picture.png");  // sRGB, eight times as bright
 }
 
 void batches(const Camera& camera, std::size_t count) {
@@ -153,6 +162,7 @@ int main() {
   const Lens lens = focused_lens();
   const Camera camera(lens, film);
   first_camera();
+  save(lens);
   batches(camera, 1000);
   connections(camera);
   const CameraRay r = camera.sample({.film = {}, .pupil_u = 0.3, .pupil_v = 0.6});
