@@ -65,7 +65,7 @@ struct LayerWave {
     const double squared = own.index * own.index - tangential_squared;
     real = own.absorption == 0 && squared >= 0;
     if (real) {
-      // The limit of a layer with a grazing wave is the layer with a wave close to it.
+      // A layer with a grazing wave has a limit: a layer whose wave is close to grazing.
       const double s = squared == 0 ? 1e-8 : std::sqrt(squared), p = own.index * own.index / s;
       const double sine = std::sin(wave_number * s);
       cosine = std::cos(wave_number * s);

@@ -83,7 +83,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     if (order < 2 || order > 40) refuse(where, "aspheric order", order, "2 to 40");
     const std::string term = "aspheric coefficient of order " + std::to_string(order);
     check_finite(where, term.c_str(), coefficient, "a finite number");
-    // The limit is that of radii, because a term of order 2 is a curvature.
+    // Terms have the limit of radii, because a term of order 2 is a curvature.
     if (std::pow(order * std::abs(coefficient), 1.0 / (order - 1)) > 1 / smallest_radius) {
       refuse(where, term, coefficient, "such that the slope is below 1 up to 1e-12 mm");
     }

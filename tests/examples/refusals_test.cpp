@@ -161,7 +161,6 @@ const std::vector<Refused> all = {
       {{f135, "--colour"}, {"--colour"}},
       {{f135, "--wavelengths", "10x"}, {"--wavelengths", "\"10x\""}},
       {{f135, "--fields", "5"}, {"--fields", "--out"}},
-      {{f135, "--out", "@out", "--json"}, {"--out", "--json"}},
       {{f135, "--out", "@out", "--fields", "0,70"}, {"--fields", 70}},
       {{f135, "--f-number", "1"}, {"--f-number", 1, 1.353314189}},
       {{f135, "--at", "15"}, {"--at", 15}},
