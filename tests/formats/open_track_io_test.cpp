@@ -19,6 +19,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {

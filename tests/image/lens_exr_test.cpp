@@ -20,6 +20,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace lens_exr_test {
