@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "handles.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
@@ -23,24 +23,14 @@
 namespace {
 
 using petzval::Vec3;
+using namespace petzval::testing;
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-const std::string double_gauss = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_100mm_f2.0.json";
-
-struct Free {
-  void operator()(petzval_lens* lens) const { petzval_lens_free(lens); }
-  void operator()(petzval_camera* camera) const { petzval_camera_free(camera); }
-  void operator()(petzval_glasses* glasses) const { petzval_glasses_free(glasses); }
-};
-using LensHandle = std::unique_ptr<petzval_lens, Free>;
-using CameraHandle = std::unique_ptr<petzval_camera, Free>;
 
 LensHandle read(const std::string& file, const std::vector<double>& nm = {}) {
   petzval_lens_options options = petzval_lens_options_init();
   options.wavelengths_nm = nm.data(), options.wavelength_count = nm.size();
-  petzval_lens* lens = nullptr;
-  EXPECT_EQ(petzval_lens_read(file.c_str(), &options, &lens), PETZVAL_OK) << petzval_message();
-  return LensHandle(lens);
+  return read_lens(file, &options);
 }
 LensHandle focused(const std::vector<double>& nm = {}) {
   LensHandle lens = read(double_gauss, nm);
@@ -51,9 +41,7 @@ LensHandle focused(const std::vector<double>& nm = {}) {
 CameraHandle camera_of(const LensHandle& lens, const petzval_camera_options& options = petzval_camera_options_init()) {
   petzval_film film = petzval_film_init();
   film.columns = 600, film.rows = 400;
-  petzval_camera* camera = nullptr;
-  EXPECT_EQ(petzval_camera_create(lens.get(), &film, &options, &camera), PETZVAL_OK) << petzval_message();
-  return CameraHandle(camera);
+  return create_camera(lens, &film, &options);
 }
 petzval::Camera same_camera(const std::vector<double>& nm = {}, petzval::CameraOptions options = {}) {
   const auto prescription = petzval::read_prescription(double_gauss);

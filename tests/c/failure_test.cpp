@@ -6,35 +6,15 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "handles.hpp"
 #include "petzval/petzval.h"
 
 namespace {
 
-const std::string double_gauss = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_100mm_f2.0.json";
-
-struct Free {
-  void operator()(petzval_lens* lens) const { petzval_lens_free(lens); }
-  void operator()(petzval_camera* camera) const { petzval_camera_free(camera); }
-  void operator()(petzval_glasses* glasses) const { petzval_glasses_free(glasses); }
-};
-using LensHandle = std::unique_ptr<petzval_lens, Free>;
-using CameraHandle = std::unique_ptr<petzval_camera, Free>;
-
-LensHandle read_lens() {
-  petzval_lens* lens = nullptr;
-  EXPECT_EQ(petzval_lens_read(double_gauss.c_str(), nullptr, &lens), PETZVAL_OK) << petzval_message();
-  return LensHandle(lens);
-}
-CameraHandle camera_of(const LensHandle& lens, const petzval_film* film = nullptr,
-                       const petzval_camera_options* options = nullptr) {
-  petzval_camera* camera = nullptr;
-  EXPECT_EQ(petzval_camera_create(lens.get(), film, options, &camera), PETZVAL_OK) << petzval_message();
-  return CameraHandle(camera);
-}
+using namespace petzval::testing;
 
 /// N results with bytes as on a used stack.
 template <class T, std::size_t n = 1>
@@ -110,7 +90,7 @@ TEST(CFailures, ResultsOfLensesAreReset) {
 
 TEST(CFailures, ResultsOfCamerasAreReset) {
   const LensHandle lens = read_lens();
-  const CameraHandle owner = camera_of(lens);
+  const CameraHandle owner = create_camera(lens);
   const petzval_camera* const camera = owner.get();
   Filled<petzval_camera*> made;
   EXPECT_RESET(petzval_camera_create(nullptr, nullptr, nullptr, made), made.is_reset());
@@ -176,7 +156,7 @@ void expect_reset_arrays(const Call& call, const petzval_camera* camera) {
 }
 
 TEST(CFailures, ArraysAreReset) {
-  const CameraHandle camera = camera_of(read_lens());
+  const CameraHandle camera = create_camera(read_lens());
   expect_reset_arrays<float, petzval_samples_float, petzval_rays_float>(petzval_camera_sample_float, camera.get());
   expect_reset_arrays<double, petzval_samples_double, petzval_rays_double>(petzval_camera_sample_double, camera.get());
 }
@@ -199,7 +179,7 @@ TEST(CFailures, WrittenCamerasAreReadWithAnyUnusedMember) {
   const LensHandle lens = read_lens();
   petzval_film film = petzval_film_init();
   film.columns = 2000000000, film.z_mm = std::numeric_limits<double>::quiet_NaN();  // without has_z
-  const CameraHandle camera = camera_of(lens, &film);
+  const CameraHandle camera = create_camera(lens, &film);
   EXPECT_EQ(read_back(written(camera.get())), PETZVAL_OK) << petzval_message();
   petzval_camera_options options = petzval_camera_options_init();
   petzval_camera* made = nullptr;
@@ -208,7 +188,7 @@ TEST(CFailures, WrittenCamerasAreReadWithAnyUnusedMember) {
 }
 
 TEST(CFailures, SetupsWithWrongMembersAreRefusedByName) {
-  const CameraHandle camera = camera_of(read_lens());
+  const CameraHandle camera = create_camera(read_lens());
   const std::string bytes = written(camera.get());
   for (const char* const name : {"z_mm", "columns", "units_per_mm", "primary_nm", "clamp", "opens_mm", "model"}) {
     for (const char* const wrong : {"\"no\"", "null", "[]", "true"}) {
@@ -238,7 +218,7 @@ TEST(CFailures, DirectionsOfZeroAndTinyUnitsAreRefused) {
   petzval_psf_options how = petzval_psf_options_init();
   how.distant = 1, how.pixels = 8, how.samples = 256;
   petzval_psf psf = petzval_psf_init();
-  EXPECT_EQ(petzval_camera_point_image(camera_of(lens).get(), zero.data(), &how, &psf, nullptr, 0),
+  EXPECT_EQ(petzval_camera_point_image(create_camera(lens).get(), zero.data(), &how, &psf, nullptr, 0),
             PETZVAL_BAD_ARGUMENT);
   EXPECT_NE(std::string(petzval_message()).find("point"), std::string::npos);
   petzval_camera_options options = petzval_camera_options_init();
