@@ -38,9 +38,9 @@ struct LayerSet::Data {
   float alpha(int layer, std::size_t pixel) const noexcept { return planes > 3 ? plane(layer, 3)[pixel] : 1.0f; }
 
   /// Grows the memory. The last layer has a plane for each colour and alpha until it is packed.
-  void reserve() {
+  void reserve(std::size_t stride) {
     const std::size_t count_of_planes = static_cast<std::size_t>(planes * (capacity - 1) + 5);
-    memory.resize(std::max(memory.size(), 2 * slack + count_of_planes * plane_stride()));
+    memory.resize(std::max(memory.size(), 2 * slack + count_of_planes * stride));
   }
   /// The depths of all layers.
   blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }

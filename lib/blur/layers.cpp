@@ -59,8 +59,9 @@ LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) 
   data.columns = data.rows = data.count = 0, data.planes = 3, data.opaque = true;  // also if memory runs out
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   data.below.assign(pixels, infinity);
-  data.columns = columns, data.rows = rows, data.capacity = layers;
-  data.reserve();
+  data.capacity = layers;
+  data.reserve(pixels + slack);
+  data.columns = columns, data.rows = rows;
 }
 
 LayerSet::Data::Filling::~Filling() {
@@ -136,7 +137,7 @@ void LayerSet::Data::add_alpha() {
                  static_cast<std::size_t>(number) * plane_stride() * sizeof(float));
   };
   planes = 4;
-  reserve();
+  reserve(plane_stride());
   move(3 * count, 4 * count, 5);
   for (int layer = count; layer-- > 0;) {
     move(3 * layer, 4 * layer, 3);
