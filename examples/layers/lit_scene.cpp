@@ -503,8 +503,9 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
           const float reach = lamp.radius_px + 0.5f;
           int near[packet], any = 0;
           for (int lane = 0; lane < packet; ++lane) {
-            near[lane] = (std::abs(at_x[lane] + slope_x[lane] * lamp.inverse_depth - lamp.raster.x) < reach) &
-                         (std::abs(at_y[lane] + slope_y[lane] * lamp.inverse_depth - lamp.raster.y) < reach);
+            const float x = at_x[lane] + slope_x[lane] * lamp.inverse_depth - lamp.raster.x,
+                        y = at_y[lane] + slope_y[lane] * lamp.inverse_depth - lamp.raster.y;
+            near[lane] = std::max(std::abs(x), std::abs(y)) < reach;
             any |= near[lane];
           }
           for (int lane = 0; any && lane < packet; ++lane) {

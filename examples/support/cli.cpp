@@ -491,7 +491,7 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   } catch (const CLI::ParseError& error) {
     // A mistyped flag comes before its consequences: missing or surplus arguments.
     std::vector<std::string> extras = app.app_->remaining();
-    std::ranges::stable_partition(extras, [](const std::string& word) { return word.starts_with('-'); });
+    std::stable_partition(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with('-'); });
     const bool mistyped = !extras.empty() && extras.front().starts_with('-');
     if (!mistyped && !dynamic_cast<const CLI::ExtrasError*>(&error)) return fail(error.what());
     if (!extras.empty() && !extras.front().starts_with('-')) {
