@@ -394,8 +394,8 @@ TEST_F(LensReport, CountsSurfacesFromOneInTheNoteAboutTheStop) {
 /// The cells of the row of a surface in one of the tables of a page.
 std::vector<std::string> row_of(const std::string& page, const std::string& heading, const std::string& first) {
   std::vector<std::string> cells;
-  std::size_t at = page.find("<tr><td class=\"number\">" + first + "</td>", page.find("<h2>" + heading + "</h2>"));
-  if (at == std::string::npos) at = page.find("<tr><td>" + first + "</td>", page.find("<h2>" + heading + "</h2>"));
+  std::size_t at = page.find("<tr><td class=\"number\">" + first + "</td>", page.find('>' + heading + "</h2>"));
+  if (at == std::string::npos) at = page.find("<tr><td>" + first + "</td>", page.find('>' + heading + "</h2>"));
   if (at == std::string::npos) return cells;
   const std::string row = page.substr(at, page.find("</tr>", at) - at);
   const std::regex cell("<td[^>]*>([^<]*)</td>");
@@ -431,13 +431,13 @@ TEST_F(LensReport, TableOfThePageHasTheNumbersOfTheSource) {
   const std::string zoom = page("zoom_70-210mm_f4");
   EXPECT_EQ(row_of(zoom, "Positions", "focal length"), (Cells{"focal length", "70.55", "137.04", "205.31"}));
   EXPECT_EQ(row_of(zoom, "Positions", "13"), (Cells{"13", "18.42", "2.87", "8.5"}));
-  EXPECT_EQ(zoom.find("<h2>Aspheres</h2>"), std::string::npos);
+  EXPECT_EQ(zoom.find(">Aspheres</h2>"), std::string::npos);
 
   const std::string anamorphic = page("anamorphic_60mm_2x");
   EXPECT_EQ(row_of(anamorphic, "Table", "1").back(), "cylinder, curved in x");
   EXPECT_EQ(row_of(anamorphic, "Table", "1").at(7), "");
   EXPECT_NE(row_of(anamorphic, "Table", "7").at(7), "");
-  EXPECT_EQ(anamorphic.find("<h2>Positions</h2>"), std::string::npos);
+  EXPECT_EQ(anamorphic.find(">Positions</h2>"), std::string::npos);
 }
 
 TEST_F(LensReport, EdgeThicknessesEqualTheLibrary) {
