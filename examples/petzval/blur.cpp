@@ -114,6 +114,8 @@ class Job {
     examples::make_folder(folder);
     std::optional<examples::Progress> progress;
     if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
+    // A distance out of reach is refused before the first frame.
+    if (options_.lens.pull.moves()) lens_.focus_at(options_.lens.pull.nearest_mm(), input_.scene() != nullptr);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
       if (progress) progress->step("frame " + std::to_string(frame + 1));
       try {

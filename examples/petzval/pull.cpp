@@ -276,6 +276,16 @@ int commands::pull(int argc, char** argv) {
     examples::write_text(csv_file, to_csv(all));
     examples::write_text(svg_file, svg);
     std::vector<std::string> files{csv_file, svg_file};
+    const double at_infinity = lens.exact ? petzval::with_focus(*lens.lens, infinity, options.focus.options()).film_z()
+                                          : lens.ideal.rear_focal_z;
+    const auto beyond = std::ranges::count_if(all, [&](const Frame& f) {
+      constexpr double tolerance_mm = 1e-3;
+      return std::isinf(f.distance_mm) && std::abs(f.film.z() - at_infinity) > tolerance_mm;
+    });
+    if (beyond > 0 && !options.tilt) {
+      std::cerr << "note: " << beyond << " of " << all.size() << " frames are focused beyond infinity; in " << keys_file
+                << " they are at infinity\n";
+    }
     if (!options.tilt) {
       examples::write_text(keys_file, to_keys(all, options.focus.origin));
       files.push_back(keys_file);

@@ -148,6 +148,12 @@ class Job {
     expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
+  /// @throws petzval::Error  if the lens cannot be focused
+  static void check_focus(const Options& options) {
+    examples::focused(examples::load_lens(options.lens_file, colours_named(options.wavelengths).compiled_nm()),
+                      options.setup);
+  }
+
   /// Renders and writes the results.
   void run() {
     const renderer::LensCamera lens = camera(chosen_.model);
@@ -411,6 +417,10 @@ void render_frames(Options options) {
     throw petzval::Error("--frames = " + std::to_string(count) + ": must be used with --focus A:B or KEYS.json");
   }
   const fs::path folder = options.out_folder;
+  if (pull.moves()) {  // a distance out of reach is refused before the first frame
+    options.setup.focus_mm = pull.nearest_mm();
+    Job::check_focus(options);
+  }
   for (std::uint32_t frame = 0; frame < count; ++frame) {
     if (count > 1) {
       options.out_folder = (folder / ("frame_" + examples::frame_number(frame))).string();

@@ -78,6 +78,8 @@ double FocusPull::distance_mm(std::uint32_t frame, std::uint32_t count) const {
   return 1 / std::lerp(a.inverse_mm, b.inverse_mm, (time - a.time_s) / (b.time_s - a.time_s));
 }
 
+double FocusPull::nearest_mm() const { return 1 / std::ranges::max(keys, {}, &Key::inverse_mm).inverse_mm; }
+
 void add_focus_pull(App& app, FocusPull& pull, double& focus_mm, const std::string& frames_help) {
   app.add_option(
          "--focus",

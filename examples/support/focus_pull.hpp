@@ -32,6 +32,8 @@ struct FocusPull {
   double time_s(std::uint32_t frame) const noexcept { return frame / (frames_per_s > 0 ? frames_per_s : 24); }
   /// Distance in focus in a frame of `count` frames, mm.
   double distance_mm(std::uint32_t frame, std::uint32_t count) const;
+  /// The nearest distance of all keys, mm. Requires moves().
+  double nearest_mm() const;
 };
 
 /// Adds --focus, which also sets focus_mm to the first distance, --frames and --fps.
