@@ -64,8 +64,10 @@ std::string light_lost(const Prescription& rows, const Lens& lens, const LensSur
                            .z = -rows.design.object_distance_mm};
     const double whole = pupil_boundary(lens_detail::without_edges(lens), point).area();
     if (!(whole > 0)) return text;
-    return text + ", and " + to_text(100 * (1 - pupil_boundary(lens, point).area() / whole), 3) +
-           " % of the light at " + to_text(degrees(point.field_rad), 4) + " degrees is lost at such edges";
+    const double lost = 1 - pupil_boundary(lens, point).area() / whole;
+    constexpr double search_error = 1e-5;
+    return text + ", and " + (lost > search_error ? to_text(100 * lost, 3) + " %" : "none") + " of the light at " +
+           to_text(degrees(point.field_rad), 4) + " degrees is lost at such edges";
   } catch (const Error&) {
     return text;  // field angles are undefined
   }
