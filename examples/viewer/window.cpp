@@ -683,6 +683,9 @@ void show_window(const WindowOptions& options) {
       if (last) {
         examples::write_png(screen->picture(), options.screenshot);
         open = false;
+        const std::string& refused = window.worker().refused();
+        const std::string& why = refused.empty() ? window.shown()->problem : refused;
+        if (!why.empty()) throw petzval::Error(why);
       }
       screen->swap();
     }

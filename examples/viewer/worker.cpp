@@ -48,11 +48,19 @@ Worker::Worker(const SessionOptions& options, const Json& first_events) : sessio
   const petzval::Vec2<double> middle(film.columns / 2, film.rows / 2);
   if (first_events.is_null()) {
     session_.editor().apply(Json{{"type", "add_point"}, {"id", "1"}, {"pixel", {middle.x, middle.y}}}.dump());
-  } else {
-    session_.editor().replay(first_events.dump());
+  }
+  std::size_t number = 0, count = 0;
+  for (const Json& event : first_events) {
+    ++number;
+    try {
+      session_.editor().apply(event.dump());
+    } catch (const petzval::Error& why) {
+      refused_ = std::to_string(++count) + " of " + std::to_string(first_events.size()) +
+                 " events were refused, the last: event " + std::to_string(number) + ": " + why.what();
+    }
   }
   look_at_ = middle;
-  show_state(Snapshot{.state = session_.editor().state()});
+  show_state(Snapshot{.state = session_.editor().state(), .message = refused_});
   thread_ = std::thread([this] { run(); });
 }
 

@@ -61,6 +61,8 @@ class Worker {
   std::shared_ptr<const Snapshot> snapshot() const;
   /// The file of --replay. Waits for the event under way.
   examples::Json log();
+  /// How many of the first events were refused, and the reason for the last; empty if none was.
+  const std::string& refused() const noexcept { return refused_; }
   /// True if the still picture of all events is shown.
   bool idle() const;
 
@@ -78,6 +80,7 @@ class Worker {
   void export_files(const std::filesystem::path& folder);
 
   Session session_;
+  std::string refused_;
   mutable std::mutex mutex_;  ///< of everything below
   std::condition_variable changed_;
   std::vector<examples::Json> events_;
