@@ -3,16 +3,16 @@
 
 #include <utility>
 
+#include "core/lanes.hpp"
 #include "packed_colour.hpp"
 #include "pixel_steps.hpp"
 #include "ray_rows.hpp"
-#include "trace/lanes.hpp"
 
 namespace petzval::blur_detail {
 namespace {
 
-using Numbers = trace_detail::Lanes<float>;
-using Mask = trace_detail::Mask<float>;
+using Numbers = core_detail::Lanes<float>;
+using Mask = core_detail::Mask<float>;
 using PixelIndices = core_detail::Native<float>::Bits;  // 32-bit integers
 using Values = core_detail::Native<float>::Values;
 constexpr int width = Numbers::width;
@@ -28,12 +28,7 @@ struct WholePixel<Numbers> {
   }
 };
 
-PETZVAL_INLINE Numbers load(const float* from) noexcept {
-  Numbers result;
-  __builtin_memcpy(&result.v, from, sizeof result.v);
-  return result;
-}
-PETZVAL_INLINE void store(float* to, Numbers numbers) noexcept { __builtin_memcpy(to, &numbers.v, sizeof numbers.v); }
+using core_detail::load;
 PETZVAL_INLINE float sum_of(Numbers numbers) noexcept {
   float sum = 0;
   for (int i = 0; i < width; ++i) sum += numbers.v[i];
@@ -75,19 +70,7 @@ struct Anywhere {
   Mask lanes;
 
   PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
-#if defined(__AVX512F__)
-    return Numbers(
-        _mm512_mask_i32gather_ps(_mm512_setzero_ps(), lanes.bits, reinterpret_cast<__m512i>(offsets), plane, 4));
-#elif defined(__AVX2__)
-    return Numbers(_mm256_mask_i32gather_ps(_mm256_setzero_ps(), plane, reinterpret_cast<__m256i>(offsets),
-                                            reinterpret_cast<__m256>(lanes.bits), 4));
-#else
-    Numbers result(0.0f);
-    for (int i = 0; i < width; ++i) {
-      if (lanes.bits[i]) result.v[i] = plane[offsets[i]];
-    }
-    return result;
-#endif
+    return core_detail::gather(plane, offsets, lanes);
   }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops over blocks of camera samples, before and after ray computation, compiled once for each instruction set. Names
-// are local, and no other library is called, as in lib/trace/lanes.hpp.
+// are local, and no other library is called, as in lib/core/lanes.hpp.
 #include "camera_loops.hpp"
 
 #include "camera_steps.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Evaluates a fitted transmittance for blocks of rays, compiled once for each instruction set. Names are local, and no
-// other library is called, as in lib/trace/lanes.hpp.
+// other library is called, as in lib/core/lanes.hpp.
 #include "transmission_loops.hpp"
 
 #include "core/loop_math.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Newton's method on lanes for the inverse of polynomials, compiled once for each instruction set.
+#include "core/lanes.hpp"
 #include "inverse.hpp"
 #include "loops.hpp"
-#include "trace/lanes.hpp"
 
 namespace petzval::polynomial_detail {
 namespace {
 
-using V = trace_detail::Lanes<double>;
+using V = core_detail::Lanes<double>;
 
 /// Newton's iteration with full steps. Returns the lanes that converged, inside or outside the domain.
 template <int n>
@@ -38,15 +38,8 @@ void invert(const double* coefficients, const InverseColumns& target, InverseCol
             std::array<double, inverse_block>& found) noexcept {
   const V none(0.0), one(1.0);
   for (std::size_t o = 0; o < inverse_block; o += V::width) {
-    const auto load = [o](const std::array<double, inverse_block>& from) {
-      V v;
-      __builtin_memcpy(&v.v, from.data() + o, sizeof v.v);
-      return v;
-    };
-    const auto store = [o](const V& v, std::array<double, inverse_block>& to) {
-      __builtin_memcpy(to.data() + o, &v.v, sizeof v.v);
-    };
-    const Four<V> line{load(target[0]), load(target[1]), load(target[2]), load(target[3])};
+    const auto at_o = [o](const std::array<double, inverse_block>& from) { return core_detail::load(from.data() + o); };
+    const Four<V> line{at_o(target[0]), at_o(target[1]), at_o(target[2]), at_o(target[3])};
     Four<V> x = chief(OfRevolution<n>{}, coefficients, line);
     const auto done = converge<n>(coefficients, line, x);
     auto lit = done & within(x, within_domain), lost = one < none;
@@ -58,8 +51,8 @@ void invert(const double* coefficients, const InverseColumns& target, InverseCol
       lit = lit | second;
       lost = without(done & again, lit);
     }
-    for (std::size_t k = 0; k < 4; ++k) store(x[k], at[k]);
-    store(select(lit, one, select(lost, -one, none)), found);
+    for (std::size_t k = 0; k < 4; ++k) store(at[k].data() + o, x[k]);
+    store(found.data() + o, select(lit, one, select(lost, -one, none)));
   }
 }
 

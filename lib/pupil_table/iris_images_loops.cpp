@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of images of an iris, compiled once for each instruction set: plain loops that the compiler vectorizes. Names
-// are local, and no other library is called, as in lib/trace/lanes.hpp.
+// are local, and no other library is called, as in lib/core/lanes.hpp.
 #include "iris_images_loops.hpp"
 
 #include "core/loop_math.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks of samples of the pupils in a grid: loops without branches that the compiler vectorizes. A block of one is a
-// single sample. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+// single sample. Names are local, and no other library is called, as in lib/core/lanes.hpp.
 #pragma once
 
 #include <type_traits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Aspheres for a bundle of rays. Included like lanes.hpp.
+// Aspheres for a bundle of rays. Included like core/lanes.hpp.
 #pragma once
 
 #include "lens/asphere_hit.hpp"

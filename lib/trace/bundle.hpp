@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bundle of rays during a trace. Included like lanes.hpp.
+// A bundle of rays during a trace. Included like core/lanes.hpp.
 #pragma once
 
 #include <cstdint>
 
 #include "block.hpp"
 #if defined(PETZVAL_ONE_LANE)
-#include "one_lane.hpp"
+#include "core/one_lane.hpp"
 #else
-#include "lanes.hpp"
+#include "core/lanes.hpp"
 #endif
 
 /// Inlines the functions that must keep a single ray in registers.
@@ -27,6 +27,17 @@
 
 namespace petzval::trace_detail {
 namespace {
+
+#if defined(PETZVAL_ONE_LANE)
+using namespace core_detail::one_lane;
+template <class R>
+inline constexpr int rays_in_bundle = 1;
+#else
+using namespace core_detail;
+/// A bundle has 64 or 32 rays, enough to hide the latency of square roots.
+template <class R>
+inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
+#endif
 
 /// Rays in front of the next step: points relative to its vertex and directions p of length n (the index), in the frame
 /// of kernel::Step. Values of lost rays are meaningless; see `alive` and `tally`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distance of a bundle of rays from the rims. Included like lanes.hpp.
+// Distance of a bundle of rays from the rims. Included like core/lanes.hpp.
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that a bundle of rays keeps. Included like lanes.hpp.
+// The light that a bundle of rays keeps. Included like core/lanes.hpp.
 #pragma once
 
 #include "light_view.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a bundle into the lens, through its surfaces and out again. Included like lanes.hpp.
+// Takes a bundle into the lens, through its surfaces and out again. Included like core/lanes.hpp.
 #pragma once
 
 #include <cstddef>

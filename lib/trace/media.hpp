@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Media at a step for a bundle of rays: for one compiled wavelength, for a compiled wavelength per ray, or for any
-// wavelengths. Included like lanes.hpp.
+// wavelengths. Included like core/lanes.hpp.
 #pragma once
 
 #include <cstddef>
@@ -62,7 +62,7 @@ class MediaByRay {
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       const int o = i * V::width;
       store(first + o, look_up(sequence_.n_first, count_, indices_[i]) + load(unless_known_ + o));
-      store(per_last + o, look_up(sequence_.per_n_last, count_, indices_[i]));
+      store(per_last + o, V(look_up(sequence_.per_n_last, count_, indices_[i])));
     }
   }
 

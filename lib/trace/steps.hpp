@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One surface for a bundle of rays. Included like lanes.hpp.
+// One surface for a bundle of rays. Included like core/lanes.hpp.
 //
 // Directions are scaled by the index, |p| = n, so that refraction needs no division: p' = p + gamma N, where N is half
 // the gradient of the surface equation, and p N and p' N come from two independent square roots. The algebra is from

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of a bundle of rays with two parameters. Included like lanes.hpp.
+// Derivatives of a bundle of rays with two parameters. Included like core/lanes.hpp.
 #pragma once
 
 #include "steps.hpp"

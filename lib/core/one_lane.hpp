@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A single ray with the interface of lanes.hpp.
+// A single number with the interface of lanes.hpp.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "core/simd.hpp"
 
-namespace petzval::trace_detail {
+namespace petzval::core_detail::one_lane {
 namespace {
 
 template <class R>
@@ -16,9 +16,6 @@ struct Native {
   using Bit = std::int32_t;
   using Bits = std::int32_t;
 };
-
-template <class R>
-inline constexpr int rays_in_bundle = 1;
 
 template <class R>
 struct Mask {
@@ -132,4 +129,4 @@ Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::trace_detail
+}  // namespace petzval::core_detail::one_lane

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// As many rays as a register holds: numbers and masks with the interface of core/scalar.hpp. Included, like
-// core/simd.hpp, by sources that are compiled for one instruction set each.
+// A scalar of kernels that holds one number for each lane of a register: numbers and masks with the interface of
+// core/scalar.hpp. Included, like core/simd.hpp, by sources that are compiled for one instruction set each.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,8 @@
 #include "core/look_up.hpp"
 #include "core/simd.hpp"
 
-namespace petzval::trace_detail {
+namespace petzval::core_detail {
 namespace {
-
-using core_detail::Native;
-
-/// A bundle has 64 or 32 rays, enough to hide the latency of square roots.
-template <class R>
-inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
 
 /// A mask: the lanes in which a comparison holds.
 template <class R>
@@ -38,12 +32,12 @@ struct Mask {
   friend PETZVAL_INLINE Mask without(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits & ~b.bits)}; }
 };
 
-/// One number for each of `width` rays.
+/// One number for each of `width` lanes.
 template <class R>
 struct Lanes {
   using Scalar = R;
   using Values = typename Native<R>::Values;
-  static constexpr int width = core_detail::lane_count<R>;
+  static constexpr int width = lane_count<R>;
   Values v;
 
   Lanes() = default;
@@ -311,9 +305,21 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
   __builtin_memcpy(to, &x.v, sizeof x.v);
 }
 
-template <class R>
-PETZVAL_INLINE Lanes<R> look_up(const R* table, std::size_t count, const typename Native<R>::Bits& indices) noexcept {
-  return Lanes<R>(core_detail::look_up(table, count, indices));
+/// Loads from[index] in the lanes of a mask; the other lanes are 0.
+PETZVAL_INLINE Lanes<float> gather(const float* from, Native<float>::Bits indices, Mask<float> mask) noexcept {
+#if defined(__AVX512F__)
+  return Lanes<float>(
+      _mm512_mask_i32gather_ps(_mm512_setzero_ps(), mask.bits, reinterpret_cast<__m512i>(indices), from, 4));
+#elif defined(__AVX2__)
+  return Lanes<float>(_mm256_mask_i32gather_ps(_mm256_setzero_ps(), from, reinterpret_cast<__m256i>(indices),
+                                               reinterpret_cast<__m256>(mask.bits), 4));
+#else
+  Lanes<float> result(0.0f);
+  for (int l = 0; l < Lanes<float>::width; ++l) {
+    if (mask.bits[l]) result.v[l] = from[indices[l]];
+  }
+  return result;
+#endif
 }
 
 /// Number of lanes of a mask.
@@ -363,4 +369,4 @@ PETZVAL_INLINE Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noe
 }
 
 }  // namespace
-}  // namespace petzval::trace_detail
+}  // namespace petzval::core_detail
