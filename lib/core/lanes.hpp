@@ -231,13 +231,17 @@ PETZVAL_INLINE Lanes<R> near_reciprocal(Lanes<R> b) noexcept {
 #endif
 }
 
-/// A second root to be computed together with root(). Under AVX2, double roots start from the float approximation, so
-/// that the two roots do not compete for the only divider. For values within the range of float.
+/// A second root to be computed together with root(). Under AVX2 it starts from the approximation of floats, so that
+/// the two roots do not compete for the only divider. Defined where has_root() is true.
 template <class R>
 PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX2__) && !defined(__AVX512F__)
-  if constexpr (sizeof(R) == 8) {
-    const Lanes<R> half(R(0.5));
+  const Lanes<R> half(R(0.5));
+  if constexpr (sizeof(R) == 4) {
+    const Lanes<R> y(_mm256_rsqrt_ps(x.v));
+    const Lanes<R> s = x * y;
+    return s + half * y * (x - s * s);
+  } else {
     const Lanes<R> y(_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x.v))));
     const Lanes<R> s = x * y, h = half * y;
     const Lanes<R> e = half - s * h;
@@ -246,15 +250,16 @@ PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
     const Lanes<R> close = closer + closer * f;
     return close + (h_closer + h_closer * f) * (x - close * close);
   }
-#endif
+#else
   return root(x);
+#endif
 }
 
 /// True where root() and second_root() are defined.
 template <class R>
 PETZVAL_INLINE Mask<R> has_root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX2__)
-  return x > Lanes<R>(R(0));
+  return x > Lanes<R>(R(1e-37));  // the approximations are infinite below the normal numbers of float
 #else
   return x >= Lanes<R>(R(0));
 #endif

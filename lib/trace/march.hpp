@@ -94,7 +94,10 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
     const V excess = length - V(R(1)) + b.z[i] * V(R(0));
     const Mask<R> sound = b.alive[i] & (excess * excess < V(max_excess2));
     count<1>(b.tally[i], sound);
-    const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
+    const bool all = every(sound);
+    const auto put = [&](R* to, V value, const R* before) {
+      store(to + o, all ? value : select(sound, value, load(before + o)));
+    };
     put(out.x, b.x[i], in.x);
     put(out.y, b.y[i], in.y);
     put(out.z, sense * b.z[i] + V(route.sequence.last_z), in.z);

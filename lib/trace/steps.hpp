@@ -109,12 +109,17 @@ PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundl
   follow.shift(i, t);
 }
 
-/// Number of vectors that are processed together. The second vector of a pair may hold no rays, because separate code
-/// for a single vector would round differently.
+/// Number of vectors that are processed together. Some of them may hold no rays, because separate code for fewer
+/// vectors would round differently.
+#if defined(__AVX2__) && !defined(__AVX512F__)
+inline constexpr int most_together = 4;
+#else
+inline constexpr int most_together = 2;
+#endif
 template <class R>
-inline constexpr int vectors_together = Bundle<R>::vectors % 2 == 0 ? 2 : 1;
+inline constexpr int vectors_together = Bundle<R>::vectors < most_together ? Bundle<R>::vectors : most_together;
 
-/// Refracts a pair of vectors from `first` on at a sphere. The stages of both vectors are interleaved to hide the
+/// Refracts vectors from `first` on at a sphere. The stages of the vectors are interleaved to hide the
 /// latency of square roots.
 template <bool far, class R, class Media, class Follow>
 PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, int first,
