@@ -155,7 +155,7 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
 namespace {
 
 template <class T>
-void trace_lines(const AnyRayModel& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
+void trace_lines(const RayModel& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
                  std::size_t wavelength, PointRays& out) {
   constexpr std::size_t count = lines_per_point;
   alignas(64) std::array<T, 6 * count> storage;
@@ -171,7 +171,7 @@ void trace_lines(const AnyRayModel& model, bool own_pupil, const TwoPlaneRays<co
   }
 }
 
-Tracing tracing(const AnyRayModel& model, bool own_pupil) {
+Tracing tracing(const RayModel& model, bool own_pupil) {
   const bool in_double = model.kind() == ModelKind::exact_double;
   return [&model, in_double, own_pupil](const PointLines& lines, std::size_t wavelength, PointRays& out) {
     if (in_double) {
@@ -184,8 +184,8 @@ Tracing tracing(const AnyRayModel& model, bool own_pupil) {
 
 }  // namespace
 
-Tracing tracing(const AnyRayModel& model) { return tracing(model, !model.clips_at_apertures() && !model.pinhole()); }
+Tracing tracing(const RayModel& model) { return tracing(model, !model.clips_at_apertures() && !model.pinhole()); }
 
-Tracing tracing_within(const AnyRayModel& model) { return tracing(model, false); }
+Tracing tracing_within(const RayModel& model) { return tracing(model, false); }
 
 }  // namespace petzval::analysis_detail

@@ -77,8 +77,8 @@ using Tracing = std::function<void(const PointLines& lines, std::size_t waveleng
 
 /// Traces a model as a renderer does: in float, except exact_double. Models that do not clip at apertures pass the
 /// lines within their pupils; the single ray of a pinhole represents every line. The model must outlive the result.
-Tracing tracing(const AnyRayModel& model);
+Tracing tracing(const RayModel& model);
 /// tracing() for lines that lie within the model's own pupils.
-Tracing tracing_within(const AnyRayModel& model);
+Tracing tracing_within(const RayModel& model);
 
 }  // namespace petzval::analysis_detail

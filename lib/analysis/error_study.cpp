@@ -110,8 +110,7 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
                 to_text(range->at(1)) + " mm; both must be below 0 (in front of the lens)");
   }
   const ChiefRays chief_rays(lens, exact.pupils().space());
-  const AnyRayModel any = exact;
-  const Tracing trace = tracing(any);
+  const Tracing trace = tracing(exact);
   for (const std::size_t wavelength : wavelengths_) {
     std::vector<Point>& points = points_.emplace_back();
     const double lit = lit_radius(exact, film, wavelength);
@@ -157,8 +156,7 @@ RayStudy::Largest RayStudy::largest(const Measurement& found, const Tracing& mod
   look_at_worst(found.of_blur);
   for (const auto& maxima : found.of_tolerance) result.of_tolerance.push_back(look_at_worst(maxima));
 
-  const AnyRayModel any = *exact_;
-  const Tracing trace = tracing(any);
+  const Tracing trace = tracing(*exact_);
   for (std::size_t w = 0; w < points_.size(); ++w) {
     std::vector<const Point*> points;
     for (const Point& point : points_[w]) {

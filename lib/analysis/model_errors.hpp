@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -9,10 +10,11 @@
 
 namespace petzval {
 
-/// Measures models that were built for this lens and film, including custom models. Exact rays are traced only once.
+/// Measures models that were built for this lens and film. Exact rays are traced only once.
 ///
 /// @throws Error  if model_error() does
 PETZVAL_API std::vector<ModelError> model_errors(const Lens& lens, const Film& film,
-                                                 std::span<const AnyRayModel> models, const ErrorSamples& samples);
+                                                 std::span<const std::shared_ptr<const RayModel>> models,
+                                                 const ErrorSamples& samples);
 
 }  // namespace petzval

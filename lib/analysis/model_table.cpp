@@ -104,14 +104,14 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
 
 /// Costs of models from noisy times. pinhole, thin and thick run the same loops; two discs add the look-up of a table;
 /// polynomials add a sum of terms and take longer with more terms.
-std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
+std::vector<double> costs(std::span<const std::shared_ptr<const RayModel>> models, std::vector<double> times) {
   double discs = std::numeric_limits<double>::infinity(), simpler = 0;
   const auto one_disc = [](ModelKind kind) { return kind.is_first_order() && kind != ModelKind::thin_two_disc; };
   for (std::size_t k = 0; k < models.size(); ++k) {
-    if (one_disc(models[k].kind())) discs = std::min(discs, times[k]);
+    if (one_disc(models[k]->kind())) discs = std::min(discs, times[k]);
   }
   for (std::size_t k = 0; k < models.size(); ++k) {
-    const ModelKind kind = models[k].kind();
+    const ModelKind kind = models[k]->kind();
     if (!kind.is_first_order() && !kind.is_polynomial()) continue;
     times[k] = one_disc(kind) ? discs : std::max(times[k], simpler);
     simpler = std::max(simpler, times[k]);
@@ -130,12 +130,12 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
   ModelTable table;
   table.without_transmission = transmission_error(setting.lens, film);
-  std::vector<AnyRayModel> all;
+  std::vector<std::shared_ptr<const RayModel>> all;
   for (const ModelKind model : models()) {
     ModelCandidate& candidate = table.models.emplace_back();
     candidate.model = model;
     std::vector<double>& of_tolerance = table.of_tolerance.emplace_back();
-    std::optional<AnyRayModel> built;
+    std::shared_ptr<const RayModel> built;
     const auto start = std::chrono::steady_clock::now();
     try {
       built = camera_detail::make_model(model, setting.lens, film.radius_mm());
@@ -159,7 +159,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     candidate.bound_exposure = model == ModelKind::exact_double ? 0 : pupils.exposure_bound;
     candidate.bound_pupil_shape = model == ModelKind::exact_double ? 0 : pupils.shape_bound;
     of_tolerance = rays.of_tolerance;
-    all.push_back(*built);
+    all.push_back(built);
     if (model == ModelKind::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
   }
   const std::vector<double> times = costs(all, time_rays(all, film));
@@ -167,8 +167,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     if (table.models[k].available) table.models[k].ns_per_ray = times[next++];
   }
 
-  const AnyRayModel exact = setting.exact;
-  const ModelPupils pupils = pupils_of(exact);
+  const ModelPupils pupils = pupils_of(setting.exact);
   const std::vector<std::size_t>& wavelengths = setting.samples.wavelengths;
   const std::size_t central = central_of(setting.lens, wavelengths);
   table.pixel_mm = film.pixel_mm();

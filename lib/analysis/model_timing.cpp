@@ -29,7 +29,7 @@ class Work {
     }
   }
 
-  double ns_per_ray(const AnyRayModel& model) {
+  double ns_per_ray(const RayModel& model) {
     const auto at = [this](std::size_t k) { return &values_[k * rays]; };
     const CameraSamples<T> in{at(0), at(1), at(2), at(3)};
     const CameraRays<T> out{{at(4), at(5), at(6), at(7), at(8), at(9)}, at(10), fates_.data()};
@@ -49,16 +49,16 @@ class Work {
 
 }  // namespace
 
-std::vector<double> time_rays(std::span<const AnyRayModel> models, const Film& film) {
+std::vector<double> time_rays(std::span<const std::shared_ptr<const RayModel>> models, const Film& film) {
   std::vector<double> best(models.size(), std::numeric_limits<double>::infinity());
   if (models.empty()) return best;
-  const std::size_t wavelengths = models[0].pupils().wavelengths();
+  const std::size_t wavelengths = models[0]->pupils().wavelengths();
   Work<float> in_float(film, wavelengths);
   Work<double> in_double(film, wavelengths);
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < models.size(); ++k) {
-      const bool exact = models[k].kind() == ModelKind::exact_double;
-      best[k] = std::min(best[k], exact ? in_double.ns_per_ray(models[k]) : in_float.ns_per_ray(models[k]));
+      const bool exact = models[k]->kind() == ModelKind::exact_double;
+      best[k] = std::min(best[k], exact ? in_double.ns_per_ray(*models[k]) : in_float.ns_per_ray(*models[k]));
     }
   }
   return best;

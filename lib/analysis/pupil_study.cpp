@@ -42,7 +42,7 @@ core_detail::Kronecker<2> uniform_points(const ErrorSamples& samples, std::size_
 
 }  // namespace
 
-ModelPupils pupils_of(const AnyRayModel& model) {
+ModelPupils pupils_of(const RayModel& model) {
   return {model.pupils(), tracing_within(model), tracing(model), model.pinhole(), {}};
 }
 
@@ -56,8 +56,7 @@ double PupilStudy::weight(const PointLines& lines, std::size_t line) const noexc
 PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
                        const ErrorSamples& samples)
     : samples_(samples),
-      any_(exact),
-      exact_(pupils_of(any_)),
+      exact_(pupils_of(exact)),
       depth_(exact.pupils().space().depth()),
       wavelengths_(wavelengths_of(exact.lens(), samples)) {
   for (const std::size_t wavelength : wavelengths_) {

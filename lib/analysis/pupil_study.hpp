@@ -21,7 +21,7 @@ struct ModelPupils {
   std::optional<FilmPoint> of;  ///< if set, the samples of this film point are used for all film points
 };
 /// The model must outlive the result.
-ModelPupils pupils_of(const AnyRayModel& model);
+ModelPupils pupils_of(const RayModel& model);
 
 /// Errors of pupils and exposures relative to a lens whose pupils are traced once. Areas and integrals are means over
 /// uniform samples of a pupil times its area, so that the relative accuracy does not depend on the size of a pupil.
@@ -54,7 +54,6 @@ class PupilStudy {
   double weight(const PointLines& lines, std::size_t line) const noexcept;
 
   const ErrorSamples samples_;
-  const AnyRayModel any_;
   const ModelPupils exact_;
   const double depth_;
   std::vector<std::size_t> wavelengths_;

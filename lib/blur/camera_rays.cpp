@@ -48,9 +48,7 @@ class RaysOfCamera {
         layers_(layers),
         origin_z_(layer_origin_z(camera)),
         wavelengths_(wavelengths.begin(), wavelengths.end()) {
-    const bool clips = camera.model() == ModelKind::exact_float || camera.model() == ModelKind::exact_double ||
-                       camera.model() == ModelKind::custom;
-    if (clips) light_ = light_table(options);
+    if (camera.model().is_exact()) light_ = light_table(options);
   }
 
   void operator()(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,

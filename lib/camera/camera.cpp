@@ -6,8 +6,8 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 
-#include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "check_film.hpp"
 #include "core/low_discrepancy.hpp"
@@ -21,55 +21,6 @@ namespace {
 using camera_detail::FilmView;
 using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
-
-constexpr double plane_tolerance_mm = 1e-6;
-constexpr double rounding = 1e-9;  // relative tolerance of radii
-
-/// @throws Error  if the pupils of the model belong to other wavelengths, to another film or to a smaller film
-void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
-  if (pupils.wavelengths() != wavelengths) {
-    throw Error(lens.name() + ": camera: the model has " + std::to_string(pupils.wavelengths()) +
-                " wavelengths; must equal the number of the lens, " + std::to_string(wavelengths));
-  }
-  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= plane_tolerance_mm)) {
-    throw Error(lens.name() + ": camera: film_z of the model = " + to_text(pupils.space().film_z) +
-                " mm; must equal film_z of the lens, " + to_text(lens.film_z()) + " mm");
-  }
-  if (!(radius <= pupils.film_radius() * (1 + rounding))) {
-    throw Error(lens.name() + ": camera: film_radius of the model = " + to_text(pupils.film_radius()) +
-                " mm; must be at least " + to_text(radius) + " mm");
-  }
-}
-
-/// @throws Error  if the polynomials have other wavelengths or planes, or do not cover the film
-void check_polynomials(const Lens& lens, const AnyRayModel& model, double radius) {
-  const auto* const polynomials = model.as<PolynomialModel>();
-  if (!polynomials) return;
-  const std::string where = lens.name() + ": camera: the polynomials ";
-  const auto& fits = polynomials->polynomial().fits();
-  if (fits.size() != lens.wavelengths_nm().size()) {
-    throw Error(where + "have " + std::to_string(fits.size()) + " wavelengths; must equal the number of the lens, " +
-                std::to_string(lens.wavelengths_nm().size()));
-  }
-  for (std::size_t w = 0; w < fits.size(); ++w) {
-    if (lens.position(Wavelength::nm(fits[w].wavelength_nm)) == w) continue;
-    throw Error(where + "have " + to_text(fits[w].wavelength_nm) + " nm for wavelength " + std::to_string(w) +
-                "; must be " + to_text(lens.wavelengths_nm()[w]) + " nm, as in the lens");
-  }
-  const RayPolynomial::Domain& domain = polynomials->polynomial().domain();
-  const TwoPlanes& planes = model.pupils().space();
-  if (!(std::abs(domain.space.film_z - planes.film_z) <= plane_tolerance_mm &&
-        std::abs(domain.space.pupil_z - planes.pupil_z) <= plane_tolerance_mm)) {
-    throw Error(where + "have film_z = " + to_text(domain.space.film_z) +
-                " and pupil_z = " + to_text(domain.space.pupil_z) + " mm; must equal the planes of the lens, " +
-                to_text(planes.film_z) + " and " + to_text(planes.pupil_z) + " mm");
-  }
-  if (!(radius <= domain.film_radius * (1 + rounding))) {
-    throw Error(where + "have film_radius = " + to_text(domain.film_radius) + " mm; must be at least " +
-                to_text(radius) + " mm");
-  }
-}
 
 /// Mean weight on the axis. Every sample has a different v. With the few values of v of a grid, the mean would change
 /// in steps as the edge of the pupil crosses one of them.
@@ -91,7 +42,7 @@ double on_axis(const FilmView& view, std::size_t wavelength) {
   return sum / count;
 }
 
-std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model,
+std::vector<double> scales(const Lens& lens, const Film& film, const RayModel& model,
                            const camera_detail::PupilWeights& weights, const camera_detail::Transmission& transmission,
                            Normalisation normalisation) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
@@ -131,26 +82,27 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
 }
 
 /// The wavelengths in nm if samples may lie between them, else an empty span.
-std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
-  const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
-  return any ? lens.wavelengths_nm() : std::span<const double>();
+std::span<const double> nm_of(const Lens& lens) {
+  return std::isfinite(lens.index_error()) ? lens.wavelengths_nm() : std::span<const double>();
 }
 
 }  // namespace
 
-Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
+Camera::Data::Data(const LensFacts& facts, const Film& placed, std::shared_ptr<const RayModel> made, double radius,
                    const CameraOptions& options)
     : lens(facts.lens()),
       film(placed),
-      model(any),
-      tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils(), options.threads))
-                                                     : std::nullopt),
+      model_(std::move(made)),
+      model(*model_),
+      tilted(camera_detail::tilted_or_moving(placed)
+                 ? std::optional(TiltedFilm(placed, model.pupils(), options.threads))
+                 : std::nullopt),
       weights(lens, model, options.bokeh),
       transmission(options.transmission ? camera_detail::Transmission(lens, model, radius)
                                         : camera_detail::Transmission()),
-      wavelengths(model, scales(lens, film, model, weights, transmission, options.normalisation), nm_of(lens, model)),
+      wavelengths(model, scales(lens, film, model, weights, transmission, options.normalisation), nm_of(lens)),
       front(camera_detail::front_of(lens)),
-      focus(facts, placed, any, options.focal_surface, options.expressive),
+      focus(facts, placed, model_, options.focal_surface, options.expressive),
       normalisation(options.normalisation),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
@@ -174,28 +126,12 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   const double half = std::max(film.width_mm, film.height_mm) / 2;
   const auto rim =
       bokeh.vignettes() ? std::optional(PupilRim{bokeh.lens_ratio, bokeh.rate_of_change / half}) : std::nullopt;
-  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads, rim);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options);
+  data_ = std::make_shared<const Data>(facts, placed_film,
+                                       camera_detail::make_model(options.model, facts, radius, options.threads, rim),
+                                       radius, options);
 }
 
 Camera::Camera(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
-
-Camera camera_with(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
-                   const BokehControls& bokeh) {
-  if (bokeh.blades != 0 || bokeh.vignettes()) {
-    throw Error(lens.name() +
-                ": camera: blades, lens_ratio or rate_of_change are set for a given model; must be "
-                "0, 1 and 0, and set for the model");
-  }
-  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
-  camera_detail::check_film(placed_lens, placed_film);
-  const LensFacts facts(placed_lens);
-  const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
-  check_model(placed_lens, model.pupils(), radius);
-  check_polynomials(placed_lens, model, radius);
-  return CameraAccess::camera(std::make_shared<const CameraAccess::Data>(
-      facts, placed_film, model, radius, CameraOptions{.normalisation = normalisation, .bokeh = bokeh}));
-}
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -26,12 +27,17 @@ struct CameraAccess {
 /// Data that a camera computes once: the film side in the constructor, the scene side on first use.
 struct Camera::Data {
   /// @param radius upright_radius() of the film
-  Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
+  Data(const camera_detail::LensFacts& facts, const Film& placed, std::shared_ptr<const RayModel> model, double radius,
        const CameraOptions& options);
 
   Lens lens;
   Film film;
-  AnyRayModel model;
+
+ private:
+  std::shared_ptr<const RayModel> model_;
+
+ public:
+  const RayModel& model;
   std::optional<camera_detail::TiltedFilm> tilted;
   camera_detail::PupilWeights weights;
   camera_detail::Transmission transmission;
@@ -42,11 +48,10 @@ struct Camera::Data {
   double pdf_film;  ///< density of uniform film points, 1/mm^2
 
   const camera_detail::FilmView& view() const noexcept { return view_; }
-  /// A wavelength in the form that the model accepts: an index, or nm if the model accepts any wavelength.
+  /// A wavelength as an index or in nm, clamped if the camera clamps.
   Wavelength resolved(Wavelength given) const noexcept {
     if (!given.in_nm()) return given.position(primary_);
-    if (clamp_) given = Wavelength::nm(clamped(*given.in_nm()));
-    return model.any_wavelength() ? given : Wavelength(lens.position(given));
+    return clamp_ ? Wavelength::nm(clamped(*given.in_nm())) : given;
   }
   /// Resolves the wavelengths of N rays and calls of_rays(begin, count, wavelengths) for consecutive ranges. One call
   /// covers all rays unless each ray has a wavelength in nm that must be clamped.

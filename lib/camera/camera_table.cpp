@@ -191,10 +191,9 @@ std::vector<float> camera_table(const Camera& camera) {
   if (data.weights)
     throw Error(where + "the pupil has weights; must have no weights, as a host weights its own samples");
   if (data.focus) throw Error(where + "the camera has a focal surface or an expressive lens; must have neither");
-  const auto* polynomial = data.model.as<PolynomialModel>();
+  const RayPolynomial* const polynomial = data.model.polynomial();
   const ModelKind kind = data.model.kind();
-  const bool exact = kind == ModelKind::exact_float || kind == ModelKind::exact_double;
-  if (!exact && !polynomial) {
+  if (!kind.is_exact() && !polynomial) {
     throw Error(where + "the model is " + std::string(name(kind)) +
                 "; must be exact_float, exact_double or a polynomial");
   }
@@ -204,7 +203,7 @@ std::vector<float> camera_table(const Camera& camera) {
   put_surfaces(to, data.lens);
   put_film(to, data);
   put_pupils(to, data.model.pupils().arrays());
-  if (polynomial) put_polynomial(to, polynomial->polynomial());
+  if (polynomial) put_polynomial(to, *polynomial);
   put_entrance(to, data.scene().entrance().arrays());
   to.set(1, to.list.size());
   return std::move(to.list);

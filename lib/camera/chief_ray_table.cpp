@@ -81,7 +81,7 @@ std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, st
   return end.transmitted() ? std::optional(end.ray) : std::nullopt;
 }
 
-std::optional<Ray<double>> to_scene(const AnyRayModel& model, std::size_t wavelength, Section section,
+std::optional<Ray<double>> to_scene(const RayModel& model, std::size_t wavelength, Section section,
                                     const Heights& h) noexcept {
   Ray<double> ray;
   const RayFate fate = model.to_scene(section.line(h), wavelength, ray);
@@ -97,12 +97,11 @@ TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength
   return trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
 }
 
-ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius,
-                             std::size_t wavelength, std::optional<double> middle) {
+ChiefRayTable::ChiefRayTable(const LensFacts& facts, const RayModel& model, double film_radius, std::size_t wavelength,
+                             std::optional<double> middle) {
   const Lens& lens = facts.lens();
   const TwoPlanes space = model.pupils().space();
-  const bool traced =
-      model.kind().is_polynomial() || model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
+  const bool traced = !model.kind().is_first_order();
   // Adds a chief ray; false if the ray does not reach the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
     const auto ray = traced ? to_scene(lens, space, wavelength, section, h) : to_scene(model, wavelength, section, h);

@@ -23,7 +23,7 @@ TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength
 class ChiefRayTable {
  public:
   /// @param middle for first-order models: pupil position divided by film point, for chief rays
-  ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius, std::size_t wavelength,
+  ChiefRayTable(const LensFacts& facts, const RayModel& model, double film_radius, std::size_t wavelength,
                 std::optional<double> middle = {});
 
   /// Intersection of the chief ray of a film point with the pupil plane.

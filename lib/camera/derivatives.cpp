@@ -42,7 +42,7 @@ RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept 
 
 template <class R>
 RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
-  const TwoPlanes& space = pupils_.space();
+  const TwoPlanes& space = pupils().space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const double depth = space.depth();
   const Dual x = pupil_x - film_x, y = pupil_y - film_y;

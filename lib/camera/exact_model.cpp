@@ -56,13 +56,13 @@ void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const Ra
 
 template <class R>
 template <class T>
-void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                             const RayArrays<T>& rays, RayFate* fates, const trace_detail::LensLight* light,
-                             T* transmittances) const noexcept {
+void ExactModel<R>::trace_lines(std::size_t count, const TwoPlaneRays<const T>& lines,
+                                const RayWavelengths& wavelengths, const RayArrays<T>& rays, RayFate* fates,
+                                const trace_detail::LensLight* light, T* transmittances) const noexcept {
   const R towards = static_cast<R>(towards_);
   const auto& loops = camera_loops().of<R>();
   if constexpr (std::is_same_v<R, T>) {
-    loops.start(pupils_.space(), towards, count, lines, rays);
+    loops.start(pupils().space(), towards, count, lines, rays);
     trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates, light, transmittances);
   } else {
     Block<R> own;
@@ -73,7 +73,7 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
       for (std::size_t k = 0; k < 4; ++k) {
         std::transform(from[k] + begin, from[k] + begin + n, line[k].begin(), [](T x) { return static_cast<R>(x); });
       }
-      loops.start(pupils_.space(), towards, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
+      loops.start(pupils().space(), towards, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
                   own.arrays());
       trace_in_place<R>(lens_, Travel::to_scene, n, own.arrays(), wavelengths.from(begin), fates + begin, light,
                         own.transmittances.data());
@@ -87,13 +87,27 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 }
 
 template <class R>
+void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const float>& lines,
+                             const RayWavelengths& wavelengths, const RayArrays<float>& rays, RayFate* fates,
+                             const trace_detail::LensLight* light, float* transmittances) const noexcept {
+  trace_lines(count, lines, wavelengths, rays, fates, light, transmittances);
+}
+
+template <class R>
+void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const double>& lines,
+                             const RayWavelengths& wavelengths, const RayArrays<double>& rays, RayFate* fates,
+                             const trace_detail::LensLight* light, double* transmittances) const noexcept {
+  trace_lines(count, lines, wavelengths, rays, fates, light, transmittances);
+}
+
+template <class R>
 RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                                 const trace_detail::LensLight* light, double* transmittance) const noexcept {
   const R film_x = static_cast<R>(line.film_x), film_y = static_cast<R>(line.film_y);
   const R pupil_x = static_cast<R>(line.pupil_x), pupil_y = static_cast<R>(line.pupil_y);
-  const R depth = static_cast<R>(pupils_.space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;
+  const R depth = static_cast<R>(pupils().space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;
   const R per_length = static_cast<R>(towards_) / std::sqrt(x * x + y * y + depth * depth);
-  const Ray<R> start{{pupil_x, pupil_y, static_cast<R>(pupils_.space().pupil_z)},
+  const Ray<R> start{{pupil_x, pupil_y, static_cast<R>(pupils().space().pupil_z)},
                      {x * per_length, y * per_length, depth * per_length}};
   const TraceOptions options{.travel = Travel::to_scene, .wavelength = wavelength};
   R left = 1;
@@ -109,7 +123,7 @@ template <class R>
 void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                             const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight* light,
                             double* transmittances) const noexcept {
-  const TwoPlanes& space = pupils_.space();
+  const TwoPlanes& space = pupils().space();
   Block<R> own;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
@@ -142,16 +156,7 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
   }
 }
 
-template class PETZVAL_API ExactModel<float>;
-template class PETZVAL_API ExactModel<double>;
-#define PETZVAL_EXACT(R, T)                                                                                            \
-  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&,  \
-                                                    const RayArrays<T>&, RayFate*, const trace_detail::LensLight*, T*) \
-      const noexcept;
-PETZVAL_EXACT(float, float)
-PETZVAL_EXACT(float, double)
-PETZVAL_EXACT(double, float)
-PETZVAL_EXACT(double, double)
-#undef PETZVAL_EXACT
+template class ExactModel<float>;
+template class ExactModel<double>;
 
 }  // namespace petzval::camera_detail

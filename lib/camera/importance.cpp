@@ -74,7 +74,7 @@ ImportanceSample connected(const Vec3<double>& position, const Vec3<double>& dir
 }
 
 /// Rays of a model in the scene, for each wavelength.
-std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model, int threads) {
+std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const RayModel& model, int threads) {
   return leaving_rays(
       model.pupils(), lens.rotationally_symmetric(),
       [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
@@ -84,7 +84,7 @@ std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const An
 }
 
 /// Tests if a model passes rays of the scene; rays may meet the film plane outside the film.
-ScenePassing passing(const AnyRayModel& model) {
+ScenePassing passing(const RayModel& model) {
   return
       [&model](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
         const FilmPupilTable& pupils = model.pupils();
@@ -106,16 +106,14 @@ ScenePassing passing(const AnyRayModel& model) {
 
 /// The entrance pupils of scene points. They include rays that meet the film plane outside the film; otherwise pupils
 /// would end abruptly at the edge of the film.
-EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int threads) {
-  const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
-  if (exact) return traced_entrances(lens, model.pupils(), threads);
+EntrancePupilTable entrance_of(const Lens& lens, const RayModel& model, int threads) {
+  if (model.kind().is_exact()) return traced_entrances(lens, model.pupils(), threads);
   if (model.kind().is_first_order() && !lens.iris().round()) {  // the pupils of a round stop enclose the others
     const Lens round = with_iris(lens, {});
-    return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()), threads);
+    return entrance_of(round, *make_model(model.kind(), round, model.pupils().film_radius()), threads);
   }
-  if (const auto* polynomial = model.as<PolynomialModel>(); polynomial && !lens.iris().round()) {
-    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().with_round_stop()),
-                       threads);
+  if (const RayPolynomial* const polynomial = model.polynomial(); polynomial && !lens.iris().round()) {
+    return entrance_of(with_iris(lens, {}), PolynomialModel(*polynomial, model.pupils().with_round_stop()), threads);
   }
   // A pinhole needs no rays, only the front of the lens.
   if (model.pinhole()) {
@@ -137,7 +135,7 @@ Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
 /// Area of the entrance pupil whose image is the pupil of a pinhole on the axis, mm^2. Film point and pupil position
 /// are linear in height and slope of a ray at the entrance pupil. For a film point on the axis, the height is therefore
 /// linear in the pupil position.
-double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::size_t wavelength) noexcept {
+double pinhole_entrance_area(const RayModel& model, double entrance_z, std::size_t wavelength) noexcept {
   const auto image = [&](double height, double slope) {
     const double z = 1 / std::hypot(slope, 1.0), direction = slope * z, zero = 0;
     double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
@@ -155,9 +153,8 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 }  // namespace
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-                     const LocalFocus& focus, const AnyRayModel& model, double radius,
-                     const WavelengthFacts& wavelengths, const PupilWeights& weights, const Transmission& transmission,
-                     int threads)
+                     const LocalFocus& focus, const RayModel& model, double radius, const WavelengthFacts& wavelengths,
+                     const PupilWeights& weights, const Transmission& transmission, int threads)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
@@ -174,7 +171,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       primary_(model.pupils().primary_wavelength()),
       entrance_(focus ? focus.entrances(facts.lens(), model, threads) : entrance_of(facts.lens(), model, threads)) {
   const Lens& lens = facts.lens();
-  if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
+  if (model.kind().is_exact()) traced_ = lens;
   if (model.pinhole() && pupils_.is_clipped()) {
     unclipped_ = tilted_ ? TiltedFilm(film, pupils_.unclipped()).pupils() : pupils_.unclipped();
   }
@@ -237,7 +234,7 @@ std::optional<SceneSide::OnFilm> SceneSide::meet_film(const TwoPlaneRay& ray,
 }
 
 template <std::size_t block>
-void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+void SceneSide::arrive(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                        const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept {
   std::array<double, block> x, y, z, dx, dy, dz;
   std::array<RayFate, block> refusals;
@@ -295,7 +292,7 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
 }
 
 template <std::size_t block>
-void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
+void SceneSide::weigh(const RayModel& model, std::size_t count, const RayWavelengths& wavelengths,
                       const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept {
   std::array<double, block> we, density, entrance_area, pdf_pupil, pdf_position, pdf_direction;
   const bool shared = wavelengths.shared();
@@ -338,7 +335,7 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
   }
 }
 
-void SceneSide::importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+void SceneSide::importance(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                            const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept {
   in_blocks(count, [&](auto size, std::size_t begin, std::size_t n) {
     importance_block<decltype(size)::value>(model, n, rays.from(begin), wavelengths.from(begin),
@@ -347,7 +344,7 @@ void SceneSide::importance(const AnyRayModel& model, std::size_t count, const Ra
 }
 
 template <std::size_t block>
-void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+void SceneSide::importance_block(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                                  const RayWavelengths& wavelengths, const double* times,
                                  Importance* found) const noexcept {
   // Only connections meet the pinhole: a given ray has probability 0.
@@ -383,9 +380,9 @@ void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, co
   }
 }
 
-void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points,
-                                  const double* u, const double* v, const RayWavelengths& wavelengths,
-                                  const double* times, ImportanceSample* found) const noexcept {
+void SceneSide::sample_importance(const RayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+                                  const double* v, const RayWavelengths& wavelengths, const double* times,
+                                  ImportanceSample* found) const noexcept {
   if (model.pinhole()) {
     for (std::size_t i = 0; i < count; ++i) {
       found[i] = through_pinhole(model, points[i], u[i], v[i], wavelengths.at(i), times ? times[i] : 0);
@@ -399,7 +396,7 @@ void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, c
 }
 
 template <std::size_t block>
-void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+void SceneSide::connect(const RayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                         const double* v, const RayWavelengths& wavelengths, const double* times,
                         ImportanceSample* found) const noexcept {
   std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, front_distance;
@@ -426,7 +423,7 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
   }
 }
 
-ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
+ImportanceSample SceneSide::sample_distant(const RayModel& model, const Vec3<double>& direction, double u, double v,
                                            Wavelength wavelength, double time) const noexcept {
   if (!wavelengths_.covers(wavelength) || !unit_length(direction)) {
     return {.importance = {.fate = refused(wavelength)}};
@@ -454,7 +451,7 @@ ImportanceSample SceneSide::connection(const Vec3<double>& position, const Vec3<
                    pdf);
 }
 
-ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
+ImportanceSample SceneSide::through_pinhole(const RayModel& model, const Vec3<double>& point, double u, double v,
                                             Wavelength wavelength, double time) const noexcept {
   ImportanceSample result;
   if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = refused(wavelength)}};
@@ -508,13 +505,13 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   return result;
 }
 
-double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
+double SceneSide::pdf(const RayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
                       Wavelength wavelength) const noexcept {
   const Ray<double> ray{point, direction};
   return model.pinhole() || !valid(ray, wavelength) ? 0 : entrance_.pdf(point, ray, wavelength);
 }
 
-double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
+double SceneSide::pdf_distant(const RayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
   if (model.pinhole() || !valid(ray, wavelength)) return 0;
   return entrance_.pdf(ray.direction * -infinite_distance_mm, ray, wavelength) / squared(infinite_distance_mm);
 }

@@ -132,7 +132,7 @@ struct LocalFocus::Data {
     double middle = 0;  // position of the image of the stop divided by the film point
   };
 
-  AnyRayModel model;
+  std::shared_ptr<const RayModel> model;
   Film film;
   std::optional<FocalSurface> surface;
   std::optional<camera_detail::MovingLeastSquares> offsets = {};
@@ -142,7 +142,7 @@ struct LocalFocus::Data {
   std::size_t primary = 0;
   lens_detail::BetweenWavelengths<3> between = {};  // middle, radius and dispersion
 
-  const ParaxialModel& first_order() const noexcept { return *model.as<ParaxialModel>(); }
+  const ParaxialModel& first_order() const noexcept { return *model->first_order(); }
 
   /// Data of a wavelength whose image of the stop has the given radius and is centred at `middle` times the film point.
   At at(const SectionMaps& maps, double middle, double radius, double dispersion) const noexcept {
@@ -211,13 +211,13 @@ struct LocalFocus::Data {
   }
 };
 
-LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayModel& model,
+LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const std::shared_ptr<const RayModel>& model,
                        const std::optional<FocalSurface>& surface, const ExpressiveLens& expressive) {
   const Lens& lens = facts.lens();
   const std::string where = lens.name() + ": camera: ";
   if (!surface && expressive.empty()) return;
-  if (!model.kind().is_first_order()) {
-    throw Error(where + "model = " + std::string(name(model.kind())) +
+  if (!model->kind().is_first_order()) {
+    throw Error(where + "model = " + std::string(name(model->kind())) +
                 "; must be pinhole, thin, thin_two_disc or thick for a focal surface or an expressive lens");
   }
   if (has_cylinders(lens)) {
@@ -236,11 +236,11 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
   Data data{model, film, surface};
   data.primary = lens.primary_wavelength();
   data.rules.spline = power_spline(where, expressive.power);
-  const TwoPlanes& space = model.pupils().space();
+  const TwoPlanes& space = model->pupils().space();
   if (!expressive.film_offsets.empty()) data.offsets = offsets_of(where, expressive.film_offsets, film, -space.depth());
-  if (model.pinhole()) return;
+  if (model->pinhole()) return;
 
-  const IrisImages images = iris_images(model.kind(), facts);
+  const IrisImages images = iris_images(model->kind(), facts);
   std::vector<std::array<double, 3>> values;
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double strength = strengths == 0 ? 1 : expressive.dispersion[strengths > 1 ? w : 0];
@@ -258,7 +258,7 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
     if (surface && !(reaches(surface->nearest()) && reaches(surface->farthest()))) {
       throw Error(where + "the focal surface has 1 / distance from " + to_text(surface->farthest()) + " to " +
                   to_text(surface->nearest()) + " / mm; must be in front of the pupil of " +
-                  std::string(name(model.kind())) + ", which is at z = " + to_text(maps.z) + " mm");
+                  std::string(name(model->kind())) + ", which is at z = " + to_text(maps.z) + " mm");
     }
   }
   data.between = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
@@ -414,7 +414,7 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
   return result;
 }
 
-EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& model, int threads) const {
+EntrancePupilTable LocalFocus::entrances(const Lens& lens, const RayModel& model, int threads) const {
   const Data& data = *data_;
   const double widest = data.surface ? pupil_scale(data.surface->least_extent()) : 1;
   double least_power = 0, most_power = 0;

@@ -35,7 +35,7 @@ class LocalFocus {
   LocalFocus() = default;
   /// @throws Error  if the model is not of first order, the lens has cylinders, numbers are not finite or out of range,
   ///                the surface is too close to the entrance pupil, or film offsets reach the pupil
-  LocalFocus(const LensFacts& facts, const Film& film, const AnyRayModel& model,
+  LocalFocus(const LensFacts& facts, const Film& film, const std::shared_ptr<const RayModel>& model,
              const std::optional<FocalSurface>& surface, const ExpressiveLens& expressive);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
@@ -64,7 +64,7 @@ class LocalFocus {
   /// @param plane plane of a film that is tilted or travels
   FocalSteepness steepness(const std::optional<TiltedPlane>& plane) const noexcept;
   /// The entrance pupils for points of the scene: discs that enclose the pupils of all film points.
-  EntrancePupilTable entrances(const Lens& lens, const AnyRayModel& model, int threads) const;
+  EntrancePupilTable entrances(const Lens& lens, const RayModel& model, int threads) const;
   /// Intersection of chief rays with the pupil plane, divided by the film point.
   double middle(std::size_t wavelength) const noexcept;
 

@@ -19,25 +19,22 @@ FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const L
   }
 }
 
-AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads,
-                       const std::optional<PupilRim>& rim) {
+std::shared_ptr<const RayModel> make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads,
+                                           const std::optional<PupilRim>& rim) {
   const auto behind_rim = [&](const FilmPupilTable& pupils) {
     return rim ? behind(*rim, pupils, facts.lens()) : pupils;
   };
-  if (model.is_first_order()) return ParaxialModel(model, facts, film_radius, rim);
+  if (model.is_first_order()) return std::make_shared<ParaxialModel>(model, facts, film_radius, rim);
   if (model.is_polynomial()) {
     FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius, threads);
-    return PolynomialModel(RayPolynomial::fit(facts.lens(), pupils, model.degree()), behind_rim(pupils));
+    return std::make_shared<PolynomialModel>(RayPolynomial::fit(facts.lens(), pupils, model.degree()),
+                                             behind_rim(pupils));
   }
   const auto enclosing = [&] { return behind_rim(FilmPupilTable::enclosing(facts.lens(), film_radius, threads)); };
-  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), enclosing());
-  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), enclosing());
-  throw Error(facts.lens().name() + ": camera: model = " + std::string(name(model)) +
-              "; must be one of models(), or an AnyRayModel");
+  if (model == ModelKind::exact_float) return std::make_shared<ExactModel<float>>(facts.lens(), enclosing());
+  return std::make_shared<ExactModel<double>>(facts.lens(), enclosing());
 }
 
 }  // namespace camera_detail
-
-ModelKind PolynomialModel::kind() const noexcept { return ModelKind::polynomial(polynomial_.degree()); }
 
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "camera/ray_model.hpp"
@@ -12,9 +13,9 @@ namespace petzval::camera_detail {
 
 /// Builds a model for film points up to film_radius (mm) from the axis.
 /// @param rim clips its pupils
-/// @throws Error  as the constructor of the model and FilmPupilTable::clipped_by_rim(), and for ModelKind::custom
-PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
-                                   const std::optional<PupilRim>& rim = {});
+/// @throws Error  as the constructor of the model and FilmPupilTable::clipped_by_rim()
+PETZVAL_API std::shared_ptr<const RayModel> make_model(ModelKind model, const LensFacts& facts, double film_radius,
+                                                       int threads = 1, const std::optional<PupilRim>& rim = {});
 
 /// Clips the pupils of a lens by a rim.
 /// @throws Error  as FilmPupilTable::clipped_by_rim()

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, all.size()> names{
 std::string_view name(ModelKind model) noexcept {
   const auto found = std::find(all.begin(), all.end(), model);
   if (found != all.end()) return names[static_cast<std::size_t>(std::distance(all.begin(), found))];
-  return model == ModelKind::custom ? "custom" : "unknown";
+  return "unknown";
 }
 
 std::optional<ModelKind> model_named(std::string_view name) noexcept {

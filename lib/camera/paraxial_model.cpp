@@ -200,15 +200,14 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
 
 ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
                              const std::optional<PupilRim>& rim)
-    : kind_(model),
-      pupils_(rim ? behind(*rim, pupils_of(model, facts, film_radius), facts.lens())
-                  : pupils_of(model, facts, film_radius)),
-      primary_(pupils_.primary_wavelength()),
+    : RayModel(model, rim ? behind(*rim, pupils_of(model, facts, film_radius), facts.lens())
+                          : pupils_of(model, facts, film_radius)),
+      primary_(pupils().primary_wavelength()),
       z_(facts.lens().surfaces().front().vertex_z),
       equal_sections_(!has_cylinders(facts.lens())) {
   const Lens& lens = facts.lens();
-  const TwoPlanes& space = pupils_.space();
-  if (!two_discs()) {
+  const TwoPlanes& space = pupils().space();
+  if (model != ModelKind::thin_two_disc) {
     const auto upside_down = [&](Meridian section) {
       return stop_image(model, facts, primary_, space, section).size < 0;
     };
@@ -237,7 +236,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
 }
 
 const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
-  return at_wavelength(at, pupils_.primary_wavelength(), to_scene_, between_, own);
+  return at_wavelength(at, primary_, to_scene_, between_, own);
 }
 
 std::optional<SectionMaps> ParaxialModel::maps(Wavelength at) const noexcept {
@@ -247,25 +246,33 @@ std::optional<SectionMaps> ParaxialModel::maps(Wavelength at) const noexcept {
 }
 
 const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {
-  const SectionMaps* const found = at_wavelength(at, pupils_.primary_wavelength(), to_film_, of_thick_lens_, own);
+  const SectionMaps* const found = at_wavelength(at, primary_, to_film_, of_thick_lens_, own);
   if (found == &own) own = {own.x.inverse(), own.y.inverse()};
   return found;
 }
 
 template <class T>
-void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                             const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  SectionMaps own;
-  const ParaxialJob<T> job{between_.rows<T>(), equal_sections_,        map_at(wavelengths.all, own),
-                           static_cast<T>(z_), static_cast<T>(reach_), wavelengths};
-  if constexpr (std::is_same_v<T, float>) {
-    paraxial_loops().of_float(count, job, lines, rays, fates);
-  } else {
-    paraxial_loops().of_double(count, job, lines, rays, fates);
-  }
+ParaxialJob<T> ParaxialModel::job(const RayWavelengths& wavelengths, SectionMaps& own) const noexcept {
+  return {between_.rows<T>(), equal_sections_,        map_at(wavelengths.all, own),
+          static_cast<T>(z_), static_cast<T>(reach_), wavelengths};
 }
 
-RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const float>& lines,
+                             const RayWavelengths& wavelengths, const RayArrays<float>& rays, RayFate* fates,
+                             const trace_detail::LensLight*, float*) const noexcept {
+  SectionMaps own;
+  paraxial_loops().of_float(count, job<float>(wavelengths, own), lines, rays, fates);
+}
+
+void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const double>& lines,
+                             const RayWavelengths& wavelengths, const RayArrays<double>& rays, RayFate* fates,
+                             const trace_detail::LensLight*, double*) const noexcept {
+  SectionMaps own;
+  paraxial_loops().of_double(count, job<double>(wavelengths, own), lines, rays, fates);
+}
+
+RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
+                                const trace_detail::LensLight*, double*) const noexcept {
   const auto one = paraxial_loops().one;
   const std::size_t position = wavelength.position(primary_);
   if (position < to_scene_.size()) return one(&to_scene_[position], z_, reach_, line, ray);
@@ -274,7 +281,8 @@ RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+                            const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight*,
+                            double*) const noexcept {
   const auto fill = [&](std::size_t begin, std::size_t end, const SectionMaps* map) {
     const auto [mx, my] = map ? *map : SectionMaps{};
     const auto [film_x, film_y, pupil_x, pupil_y] = lines;
@@ -296,10 +304,5 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
   }
   for (std::size_t i = 0; i < count; ++i) fill(i, i + 1, inverse_at(wavelengths.at(i), own));
 }
-
-template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&,
-                                                  const RayArrays<float>&, RayFate*) const noexcept;
-template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
-                                                  const RayArrays<double>&, RayFate*) const noexcept;
 
 }  // namespace petzval::camera_detail

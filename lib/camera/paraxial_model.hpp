@@ -34,6 +34,9 @@ struct IrisImages {
 /// @throws Error  if the film lies in the image of the stop or, for a thin lens, in the rear principal plane
 IrisImages iris_images(ModelKind model, const LensFacts& facts);
 
+template <class T>
+struct ParaxialJob;
+
 /// First-order models of a lens: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, focused where exact rays of the film centre are
@@ -49,43 +52,42 @@ IrisImages iris_images(ModelKind model, const LensFacts& facts);
 /// iris. Rays are given in the plane of the first vertex.
 ///
 /// Limitations: central obscurations are ignored. Lenses with cylinders have no pinhole and no two discs.
-class ParaxialModel {
+class PETZVAL_API ParaxialModel final : public RayModel {
  public:
-  static constexpr bool linear_in_slopes = true;
-  static constexpr bool any_wavelength = true;
-
   /// @param film_radius distance of the farthest film point from the axis, mm
   /// @param rim clips the pupils
   /// @throws Error  if the model is not of first order; if the lens is afocal, has no pupils or no finite pupil that
   ///                the model needs; for a pinhole or two discs if it has cylinders; if the film lies in the image of
   ///                the stop or, for thin lenses, in the rear principal plane; and as FilmPupilTable::clipped_by_rim()
-  PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
-                            const std::optional<PupilRim>& rim = {});
+  ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius, const std::optional<PupilRim>& rim = {});
 
-  ModelKind kind() const noexcept { return kind_; }
-  bool two_discs() const noexcept { return kind_ == ModelKind::thin_two_disc; }
+  const ParaxialModel* first_order() const noexcept override { return this; }
   /// Along x and along y: true if the pupil is an inverted image of the stop. False for two discs.
   std::array<bool, 2> stop_upside_down() const noexcept { return stop_upside_down_; }
-  const FilmPupilTable& pupils() const noexcept { return pupils_; }
   /// Maps from film and pupil points to position and slope in the plane z(), by wavelength.
   std::span<const SectionMaps> maps() const noexcept { return to_scene_; }
   /// Maps at any wavelength; nullopt if the wavelength is not covered.
   std::optional<SectionMaps> maps(Wavelength wavelength) const noexcept;
   double z() const noexcept { return z_; }
-  /// As in RayModel; empty unless this is the pinhole.
+  /// One for each wavelength: rays of a pinhole pass the pupil plane at the shift times the film point. Empty unless
+  /// this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
   /// The fate is missed_surface if numbers are not finite or beyond 1e12 mm, if rays are beyond 1e18, or if the lens
   /// does not cover the wavelength.
-  template <class T>
-  PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                            const RayArrays<T>& rays, RayFate* fates) const noexcept;
-  PETZVAL_API RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
-  /// One ray with its derivatives.
-  PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;
+  void to_scene(std::size_t count, const TwoPlaneRays<const float>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<float>& rays, RayFate* fates, const trace_detail::LensLight* = nullptr,
+                float* = nullptr) const noexcept override;
+  void to_scene(std::size_t count, const TwoPlaneRays<const double>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<double>& rays, RayFate* fates, const trace_detail::LensLight* = nullptr,
+                double* = nullptr) const noexcept override;
+  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
+                   const trace_detail::LensLight* = nullptr, double* = nullptr) const noexcept override;
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept override;
   /// Inverse of to_scene(); for the pinhole, inverse of the thick lens. The fate is missed_surface also for rays that
   /// do not travel towards the lens.
-  PETZVAL_API void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                           const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+               const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight* = nullptr,
+               double* = nullptr) const noexcept override;
 
  private:
   /// Maps to the scene, and to the film; for a pinhole the latter is the map of the thick lens. null if the wavelength
@@ -94,8 +96,9 @@ class ParaxialModel {
   const SectionMaps* map_at(Wavelength wavelength, SectionMaps& own) const noexcept;
   const SectionMaps* inverse_at(Wavelength wavelength, SectionMaps& own) const noexcept;
 
-  ModelKind kind_;
-  FilmPupilTable pupils_;
+  template <class T>
+  ParaxialJob<T> job(const RayWavelengths& wavelengths, SectionMaps& own) const noexcept;
+
   std::size_t primary_;
   double z_ = 0;      // plane of the first vertex, in which rays are given
   double reach_ = 0;  // largest sum of absolute coordinates of a line

@@ -8,41 +8,39 @@
 
 namespace petzval {
 
-/// A RayModel of fitted polynomials, for example from a file, with pupils of the same area as the real pupils.
-///
-///     const Camera camera = camera_with(lens, film, AnyRayModel(PolynomialModel(
-///         read_ray_polynomial(path), FilmPupilTable::equal_area(lens, upright_radius(lens, film)))));
-class PolynomialModel {
+/// A model of fitted polynomials, with pupils of the same area as the real pupils.
+class PolynomialModel final : public RayModel {
  public:
-  static constexpr bool any_wavelength = true;
-
   PolynomialModel(RayPolynomial polynomial, FilmPupilTable equal_area)
-      : polynomial_(std::move(polynomial)), pupils_(std::move(equal_area)) {}
+      : RayModel(ModelKind::polynomial(polynomial.degree()), std::move(equal_area)),
+        polynomial_(std::move(polynomial)) {}
 
-  PETZVAL_API ModelKind kind() const noexcept;
-  const FilmPupilTable& pupils() const noexcept { return pupils_; }
-  const RayPolynomial& polynomial() const noexcept { return polynomial_; }
-  template <class T>
-  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                const RayArrays<T>& rays, RayFate* fates) const noexcept {
-    polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
+  const RayPolynomial* polynomial() const noexcept override { return &polynomial_; }
+  void to_scene(std::size_t count, const TwoPlaneRays<const float>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<float>& rays, RayFate* fates, const trace_detail::LensLight*,
+                float*) const noexcept override {
+    polynomial_.to_scene(count, lines, wavelengths.resolved(pupils().primary_wavelength()), rays, fates);
   }
-  /// One ray.
-  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+  void to_scene(std::size_t count, const TwoPlaneRays<const double>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<double>& rays, RayFate* fates, const trace_detail::LensLight*,
+                double*) const noexcept override {
+    polynomial_.to_scene(count, lines, wavelengths.resolved(pupils().primary_wavelength()), rays, fates);
+  }
+  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray, const trace_detail::LensLight*,
+                   double*) const noexcept override {
     return polynomial_.to_scene(line, wavelength, ray);
   }
-  /// One ray with its derivatives.
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept override {
     return polynomial_.to_scene(line, wavelength);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-    polynomial_.to_film(count, rays, wavelengths.resolved(pupils_.primary_wavelength()), lines, fates);
+               const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight*,
+               double*) const noexcept override {
+    polynomial_.to_film(count, rays, wavelengths.resolved(pupils().primary_wavelength()), lines, fates);
   }
 
  private:
   RayPolynomial polynomial_;
-  FilmPupilTable pupils_;
 };
 
 }  // namespace petzval

@@ -31,9 +31,9 @@ struct Misses {
 
 }  // namespace
 
-void SceneSide::chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
+void SceneSide::chief_rays(const RayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
                            Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept {
-  if (!traced_) return model.to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
+  if (!traced_) return model.to_scene(count, lines, {.all = wavelength}, rays, fates);
   for (std::size_t i = 0; i < count; ++i) {
     const auto end =
         unclipped(*traced_, space_, wavelength, {lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]});
@@ -44,7 +44,7 @@ void SceneSide::chief_rays(const AnyRayModel& model, std::size_t count, const Tw
   }
 }
 
-Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
+Projection SceneSide::project(const RayModel& model, const Vec3<double>& point, Wavelength wavelength,
                               double time) const noexcept {
   Projection result;
   if (!wavelengths_.covers(wavelength) || !entrance_.in_front(point)) return result;

@@ -55,7 +55,7 @@ struct PupilWeights::Data {
   }
 };
 
-PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls) {
+PupilWeights::PupilWeights(const Lens& lens, const RayModel& model, const BokehControls& controls) {
   const std::string where = lens.name() + ": camera: ";
   iris_detail::check(controls.weight_map, where);
   FilmPupilTable pupils = model.pupils();
@@ -64,13 +64,12 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
     if (keep_light) data_ = std::make_shared<const Data>(Data{pupils, pupils.unclipped(), false, {}, keep_light});
     return;
   }
-  const bool traced = model.kind() != ModelKind::custom && !model.kind().is_first_order();
+  const bool traced = !model.kind().is_first_order();
   const bool has_rim = lens.stop() && std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter);
   if (traced && has_rim && !pupils.knows_stop()) pupils = pupils.with_stop(lens);
   // Pupils in closed form are images of the stop.
-  const auto* const first_order = model.as<ParaxialModel>();
-  const bool image = first_order && !first_order->two_discs();
-  const auto [along_x, along_y] = image ? first_order->stop_upside_down() : std::array{false, false};
+  const ParaxialModel* const first_order = model.first_order();
+  const auto [along_x, along_y] = first_order ? first_order->stop_upside_down() : std::array{false, false};
   // Positions in the stop and in its image are nearly equal, unless the pupil is vignetted.
   const double uniform_fraction = pupils.knows_stop() ? 0.25 : 0;
   iris_detail::IrisWeights weights(iris_detail::upside_down(lens.iris(), along_x, along_y), controls.edge(),

@@ -22,7 +22,7 @@ class PupilWeights {
   PupilWeights() = default;
   /// @throws Error  if the weight map is black, has more than 2^26 pixels, a size that does not match, or weights that
   /// are negative or not finite; or if the edge is out of range
-  PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
+  PupilWeights(const Lens& lens, const RayModel& model, const BokehControls& controls);
 
   /// The pupils to sample instead of the pupils of the model; nullopt if there are no weights.
   PETZVAL_API std::optional<FilmPupilTable> pupils() const;

@@ -9,6 +9,7 @@
 
 #include "camera_loops.hpp"
 #include "core/instruction_set.hpp"
+#include "paraxial_model.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::camera_detail {
@@ -216,10 +217,11 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
 
 }  // namespace
 
-WavelengthFacts::WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm)
-    : primary_(model.pupils().primary_wavelength()),
-      scale_(std::move(scale)),
-      shifts_(model.pinhole_shifts().begin(), model.pinhole_shifts().end()) {
+WavelengthFacts::WavelengthFacts(const RayModel& model, std::vector<double> scale, std::span<const double> nm)
+    : primary_(model.pupils().primary_wavelength()), scale_(std::move(scale)) {
+  if (const auto* const first_order = model.first_order()) {
+    shifts_.assign(first_order->pinhole_shifts().begin(), first_order->pinhole_shifts().end());
+  }
   shifts_.resize(scale_.size());
   const auto between = [&](const std::vector<double>& of) -> lens_detail::BetweenWavelengths<1> {
     std::vector<std::array<double, 1>> values;
@@ -251,7 +253,6 @@ void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>
                  const CameraRays<T>& rays) noexcept {
   CameraSamples<T> samples = given;
   samples.wavelengths = given.wavelengths.resolved(view.model.pupils().primary_wavelength());
-  if (samples.wavelengths.in_nm() && !view.model.any_wavelength()) samples.wavelengths = {view.wavelengths.count()};
   const std::size_t whole = count - count % lanes_here<T>();
   for (std::size_t begin = 0; begin < whole; begin += block) {
     const std::size_t n = std::min(block, whole - begin);

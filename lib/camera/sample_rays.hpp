@@ -24,7 +24,7 @@ class PETZVAL_API WavelengthFacts {
  public:
   /// @param scale one value for each wavelength of the model
   /// @param nm the wavelengths; empty if only compiled wavelengths have samples
-  WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm = {});
+  WavelengthFacts(const RayModel& model, std::vector<double> scale, std::span<const double> nm = {});
 
   std::size_t count() const noexcept { return scale_.size(); }
   /// Scales of the compiled wavelengths.
@@ -41,7 +41,7 @@ class PETZVAL_API WavelengthFacts {
   lens_detail::WavelengthRows<T> scale_rows() const noexcept {
     return between_scales_.rows<T>();
   }
-  /// AnyRayModel::pinhole_shifts(); 0 for other models.
+  /// ParaxialModel::pinhole_shifts(); 0 for other models.
   double pinhole_shift(Wavelength wavelength) const noexcept;
 
  private:
@@ -53,13 +53,13 @@ class PETZVAL_API WavelengthFacts {
 };
 
 /// True if the pupils of a model decide which rays pass, and not only its apertures.
-inline bool decide(const FilmPupilTable& pupils, const AnyRayModel& model) noexcept {
+inline bool decide(const FilmPupilTable& pupils, const RayModel& model) noexcept {
   return !model.clips_at_apertures() || pupils.is_clipped();
 }
 
 /// Inputs of film sampling.
 struct FilmView {
-  const AnyRayModel& model;
+  const RayModel& model;
   const Film& film;
   /// The tilted film with the model's pupils; null for an upright film that does not travel.
   const TiltedFilm* tilted = nullptr;
@@ -73,10 +73,7 @@ struct FilmView {
   core_detail::FilmBounds<double> bounds = core_detail::bounds_of<double>(film);
 
   /// True if rays of the model do not start on the front.
-  bool moves_rays() const noexcept {
-    const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
-    return !(exact && front.first_surface);
-  }
+  bool moves_rays() const noexcept { return !(model.kind().is_exact() && front.first_surface); }
 };
 
 /// Samples N camera rays in blocks: pupil, ray, weight.

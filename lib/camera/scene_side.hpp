@@ -25,20 +25,20 @@ class SceneSide {
   /// @param radius upright_radius() of the film
   /// @param wavelengths, weights, transmission as in FilmView
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-            const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
+            const LocalFocus& focus, const RayModel& model, double radius, const WavelengthFacts& wavelengths,
             const PupilWeights& weights, const Transmission& transmission, int threads);
 
-  void importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+  void importance(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                   const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
-  void sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+  void sample_importance(const RayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                          const double* v, const RayWavelengths& wavelengths, const double* times,
                          ImportanceSample* found) const noexcept;
-  ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
+  ImportanceSample sample_distant(const RayModel& model, const Vec3<double>& direction, double u, double v,
                                   Wavelength wavelength, double time) const noexcept;
-  double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
+  double pdf(const RayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
              Wavelength wavelength) const noexcept;
-  double pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
-  Projection project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
+  double pdf_distant(const RayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
+  Projection project(const RayModel& model, const Vec3<double>& point, Wavelength wavelength,
                      double time) const noexcept;
 
   /// Data that depend on the wavelength.
@@ -53,7 +53,7 @@ class SceneSide {
 
  private:
   /// Chief rays. The exact models trace them through all apertures, without clipping.
-  void chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
+  void chief_rays(const RayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
                   Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept;
 
   /// Data of a compiled wavelength.
@@ -101,23 +101,22 @@ class SceneSide {
   /// @param count at most `block`
   /// @param areas areas of the sampled pupils, one for each ray; 0 if no film sample has this ray
   template <std::size_t block>
-  void arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+  void arrive(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
               const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept;
   template <std::size_t block>
-  void weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
+  void weigh(const RayModel& model, std::size_t count, const RayWavelengths& wavelengths,
              const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept;
   template <std::size_t block>
-  void importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+  void importance_block(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                         const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
   template <std::size_t block>
-  void connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
-               const double* v, const RayWavelengths& wavelengths, const double* times,
-               ImportanceSample* found) const noexcept;
+  void connect(const RayModel& model, std::size_t count, const Vec3<double>* points, const double* u, const double* v,
+               const RayWavelengths& wavelengths, const double* times, ImportanceSample* found) const noexcept;
   /// Connection from a scene point to the position `position` in the lens, at a distance. The shadow ray ends at the
   /// front.
   ImportanceSample connection(const Vec3<double>& position, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
-  ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
+  ImportanceSample through_pinhole(const RayModel& model, const Vec3<double>& point, double u, double v,
                                    Wavelength wavelength, double time) const noexcept;
 
   Film film_;

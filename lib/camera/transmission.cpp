@@ -74,7 +74,7 @@ std::optional<double> light_along(const Lens& lens, const TwoPlanes& space, cons
 }
 
 /// Lines from film points of several radii and directions, through points spread over their pupils, that pass the lens.
-Lines traced_lines(const Lens& lens, const AnyRayModel& model, const LensLight& light, double radius, bool revolution,
+Lines traced_lines(const Lens& lens, const RayModel& model, const LensLight& light, double radius, bool revolution,
                    std::size_t wavelength, std::size_t radii, std::size_t pupil_points) {
   const TwoPlanes& space = model.pupils().space();
   const std::size_t directions = revolution ? 1 : 5;
@@ -111,8 +111,7 @@ double largest(const std::vector<double>& x, const std::vector<double>& y) noexc
 
 struct Transmission::Data {
   LensLight light;
-  const ExactModel<float>* single;
-  const ExactModel<double>* twice;
+  bool traced;  ///< by an exact model, together with its rays
   TransmissionJob<float> in_float;
   TransmissionJob<double> in_double;
   lens_detail::BetweenWavelengths<transmission_terms> coefficients;
@@ -120,22 +119,9 @@ struct Transmission::Data {
   std::size_t primary;
   double error = 0;
 
-  Data(const Lens& lens, const AnyRayModel& model, double radius)
-      : light(lens),
-        single(model.as<ExactModel<float>>()),
-        twice(model.as<ExactModel<double>>()),
-        primary(lens.primary_wavelength()) {
-    error = light.error();
-    if (!traced()) fit(lens, model, radius);
-  }
-
-  bool traced() const noexcept { return single || twice; }
-  /// Calls body with the exact model; false if the model is not exact.
-  template <class Body>
-  bool with_exact(const Body& body) const noexcept {
-    if (single) body(*single);
-    if (twice) body(*twice);
-    return traced();
+  Data(const Lens& lens, const RayModel& model, double radius)
+      : light(lens), traced(model.kind().is_exact()), primary(lens.primary_wavelength()), error(light.error()) {
+    if (!traced) fit(lens, model, radius);
   }
 
   template <class T>
@@ -159,7 +145,7 @@ struct Transmission::Data {
 
  private:
   /// Fits polynomials of rising degree until one suffices.
-  void fit(const Lens& lens, const AnyRayModel& model, double radius) {
+  void fit(const Lens& lens, const RayModel& model, double radius) {
     const bool revolution = !has_cylinders(lens);
     const auto lines_at = [&](std::size_t w, bool fresh) {
       return fresh ? traced_lines(lens, model, light, radius, revolution, w, 7, 55)
@@ -194,7 +180,7 @@ struct Transmission::Data {
       }
       if (fit_error <= tolerance) break;
     }
-    const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
+    const bool any = std::isfinite(lens.index_error());
     coefficients = {any ? lens_detail::CompiledWavelengths(lens.wavelengths_nm()) : lens_detail::CompiledWavelengths(),
                     compiled};
     in_double.rows = coefficients.rows<double>();
@@ -247,47 +233,36 @@ struct Transmission::Data {
   }
 };
 
-Transmission::Transmission(const Lens& lens, const AnyRayModel& model, double radius)
+Transmission::Transmission(const Lens& lens, const RayModel& model, double radius)
     : data_(std::make_shared<const Data>(lens, model, radius)) {}
 
 double Transmission::error() const noexcept { return data_ ? std::min(data_->error, 1.0) : 0; }
 
 template <class T>
-void Transmission::to_scene(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
+void Transmission::to_scene(const RayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
                             const RayWavelengths& wavelengths, const RayArrays<T>& rays, RayFate* fates,
                             T* transmittances) const noexcept {
-  const bool traced = data_->with_exact([&](const auto& exact) {
-    exact.to_scene(count, lines, wavelengths, rays, fates, &data_->light, transmittances);
-  });
-  if (traced) return;
-  model.to_scene(count, lines, wavelengths, rays, fates);
   std::fill_n(transmittances, count, T(1));
+  model.to_scene(count, lines, wavelengths, rays, fates, &data_->light, transmittances);
 }
 
-RayFate Transmission::to_scene(const AnyRayModel& model, const TwoPlaneRay& line, Wavelength wavelength,
-                               Ray<double>& ray, double& transmittance) const noexcept {
-  RayFate fate{};
-  const bool traced = data_->with_exact(
-      [&](const auto& exact) { fate = exact.to_scene(line, wavelength, ray, &data_->light, &transmittance); });
-  if (traced) return fate;
+RayFate Transmission::to_scene(const RayModel& model, const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
+                               double& transmittance) const noexcept {
   transmittance = 1;
-  return model.to_scene(line, wavelength, ray);
+  return model.to_scene(line, wavelength, ray, &data_->light, &transmittance);
 }
 
-void Transmission::to_film(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+void Transmission::to_film(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                            const RayWavelengths& wavelengths, const TwoPlaneRays<double>& lines, RayFate* fates,
                            double* transmittances) const noexcept {
-  const bool traced = data_->with_exact(
-      [&](const auto& exact) { exact.to_film(count, rays, wavelengths, lines, fates, &data_->light, transmittances); });
-  if (traced) return;
-  model.to_film(count, rays, wavelengths, lines, fates);
   std::fill_n(transmittances, count, 1.0);
+  model.to_film(count, rays, wavelengths, lines, fates, &data_->light, transmittances);
 }
 
 template <class T>
 void Transmission::of_lines(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             T* transmittances) const noexcept {
-  if (data_->traced()) return;
+  if (data_->traced) return;
   const TransmissionJob<T>* job = nullptr;
   if constexpr (sizeof(T) == sizeof(float)) {
     job = &data_->in_float;
@@ -303,7 +278,7 @@ void Transmission::of_lines(std::size_t count, const TwoPlaneRays<const T>& line
 }
 
 #define PETZVAL_TRANSMISSION(T)                                                                                  \
-  template void Transmission::to_scene(const AnyRayModel&, std::size_t, const TwoPlaneRays<const T>&,            \
+  template void Transmission::to_scene(const RayModel&, std::size_t, const TwoPlaneRays<const T>&,               \
                                        const RayWavelengths&, const RayArrays<T>&, RayFate*, T*) const noexcept; \
   template void Transmission::of_lines(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, T*)     \
       const noexcept;

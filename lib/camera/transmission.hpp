@@ -17,10 +17,9 @@ class PETZVAL_API Transmission {
  public:
   /// Not modelled: all light passes.
   Transmission() = default;
-  /// @param model must outlive this object
   /// @param radius largest distance of a film point from the axis, mm
   /// @throws Error  if a compiled wavelength is outside a table of reflectances
-  Transmission(const Lens& lens, const AnyRayModel& model, double radius);
+  Transmission(const Lens& lens, const RayModel& model, double radius);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
   /// Largest error, relative to all light; 0 if not modelled.
@@ -29,12 +28,12 @@ class PETZVAL_API Transmission {
   /// As the function of the model with the same name, for an exact model with the transmittances of its rays. Another
   /// model gets 1 here, and its transmittances from of_lines().
   template <class T>
-  void to_scene(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
+  void to_scene(const RayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
                 const RayWavelengths& wavelengths, const RayArrays<T>& rays, RayFate* fates,
                 T* transmittances) const noexcept;
-  RayFate to_scene(const AnyRayModel& model, const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
+  RayFate to_scene(const RayModel& model, const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                    double& transmittance) const noexcept;
-  void to_film(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+  void to_film(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
                const RayWavelengths& wavelengths, const TwoPlaneRays<double>& lines, RayFate* fates,
                double* transmittances) const noexcept;
 

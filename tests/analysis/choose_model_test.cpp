@@ -74,7 +74,7 @@ TEST_P(Promise, HoldsForOtherSamples) {
                            .film_points = 256,
                            .seed = static_cast<std::uint32_t>(random())};
   const Lens stopped = scene.f_number > 0 ? with_f_number(lens, scene.f_number) : lens;
-  std::vector<AnyRayModel> built;
+  std::vector<std::shared_ptr<const RayModel>> built;
   for (const ModelCandidate& c : choices[0].table) {
     if (c.available) built.push_back(camera_detail::make_model(c.model, stopped, film.radius_mm()));
   }

@@ -358,52 +358,5 @@ TEST(AnyWavelengthOf, ClampingUsesTheEndsOfTheRange) {
   }
 }
 
-/// A polynomial model that accepts indices of wavelengths only.
-class ByPosition {
- public:
-  explicit ByPosition(PolynomialModel model) : model_(std::move(model)) {}
-
-  const FilmPupilTable& pupils() const noexcept { return model_.pupils(); }
-  template <class T>
-  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                const RayArrays<T>& rays, RayFate* fates) const noexcept {
-    model_.to_scene<T>(count, lines, wavelengths, rays, fates);
-  }
-  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-    model_.to_film(count, rays, wavelengths, lines, fates);
-  }
-
- private:
-  PolynomialModel model_;
-};
-
-TEST(AnyWavelengthOf, ModelsByPositionAcceptOnlyCompiledWavelengths) {
-  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
-  const Lens lens = compiled(prescription, eight_wavelengths());
-  const Film film = film_for(prescription, lens);
-  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, upright_radius(lens, film));
-  const PolynomialModel model(RayPolynomial::fit(lens, pupils, 5), pupils);
-  static_assert(RayModel<ByPosition>);
-  const Camera any = camera_with(lens, film, AnyRayModel(model)),
-               own = camera_with(lens, film, AnyRayModel(ByPosition(model)));
-  EXPECT_TRUE(any.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}));
-  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}).fate,
-            RayFate::outside_spectrum);
-  EXPECT_EQ(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(511)).fate, RayFate::outside_spectrum);
-  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(400)}).weight,
-            own.sample({.film = {}, .pupil_u = 0.5, .wavelength = lens.wavelength(400)}).weight);
-  EXPECT_TRUE(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(700)));
-  const std::array<double, 2> zero{0, 0}, half{0.5, 0.5};
-  const std::array<float, 2> nm{511, 400};
-  std::array<std::array<double, 2>, 7> out{};
-  std::array<RayFate, 2> fates{};
-  const auto at = [&](std::size_t k) { return out[k].data(); };
-  own.sample<double>(2, {zero.data(), zero.data(), half.data(), half.data(), {.each_nm = nm.data()}},
-                     {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6), fates.data()});
-  EXPECT_EQ(fates[0], RayFate::outside_spectrum);
-  EXPECT_EQ(fates[1], RayFate::outside_spectrum);
-}
-
 }  // namespace any_wavelength_test
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "camera/check_film.hpp"
@@ -13,11 +14,12 @@ namespace petzval::testing {
 
 /// The model and the tilted film of a camera.
 struct CameraParts {
-  AnyRayModel model;
+  std::shared_ptr<const RayModel> made;
+  const RayModel& model = *made;
   std::optional<camera_detail::TiltedFilm> tilted;
 
   CameraParts(const Lens& lens, const Film& film, ModelKind kind)
-      : model(
+      : made(
             camera_detail::make_model(kind, camera_detail::placed(lens, film).lens, upright_radius(lens, film, kind))) {
     if (camera_detail::tilted_or_moving(film)) tilted.emplace(film, model.pupils());
   }
@@ -49,7 +51,7 @@ struct CardinalPoints {
 
 /// Derived from rays parallel to the axis at 1 mm on either side: incoming and outgoing ray intersect in a principal
 /// plane.
-inline CardinalPoints cardinal_points(const AnyRayModel& model) {
+inline CardinalPoints cardinal_points(const RayModel& model) {
   const TwoPlanes& space = model.pupils().space();
   Ray<double> ray;
   model.to_scene(TwoPlaneRay{0, 1, 0, 1}, 0, ray);

@@ -59,7 +59,7 @@ TEST(Exposure, EveryModelIsExactOnTheAxis) {
         // Pupils with more than two components along a line cannot be tabulated as polygons.
         const bool in_parts = prescription.name.starts_with("Ball lens");
         if (in_parts && (model == ModelKind::thin_two_disc || model == ModelKind::polynomial(3))) continue;
-        const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius).pupils();
+        const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius)->pupils();
         EXPECT_NEAR(exposure(*lens, pupils, {}) / exact, 1, 5e-3)
             << prescription.name << " f/" << f_number << ' ' << name(model);
         ++checked;
@@ -83,7 +83,7 @@ TEST(Exposure, ModelsWithExactPupilsAreExactOverTheField) {
       const double axis = film_irradiance(*lens, {});
       for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3)}) {
         if (model == ModelKind::thin_two_disc && !open.rotationally_symmetric()) continue;
-        const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius).pupils();
+        const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius)->pupils();
         for (const double part : {0.3, 0.5, 0.7, 0.85, 0.97}) {
           const FilmPoint film{0.6 * part * radius, 0.8 * part * radius};
           const double exact = film_irradiance(*lens, film);
@@ -102,7 +102,7 @@ TEST(Exposure, IrisWithEdgesIsExact) {
       const Lens lens = with_iris(with_f_number(testing::data_lens(id), f_number),
                                   {.blades = 6, .roundness = -0.6, .rotation_rad = 0.1});
       for (const ModelKind model : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
-        const FilmPupilTable pupils = camera_detail::make_model(model, lens, 10).pupils();
+        const FilmPupilTable pupils = camera_detail::make_model(model, lens, 10)->pupils();
         EXPECT_NEAR(exposure(lens, pupils, {}) / film_irradiance(lens, {}), 1, 5e-3) << id << ' ' << name(model);
       }
     }

@@ -244,7 +244,7 @@ TEST(Importance, FilmDarkOnTheAxisIsConnected) {
                       {.radius = -50, .thickness = 47, .semi_diameter = 12},
                       {.thickness = 1, .semi_diameter = 40, .obscuration_semi_diameter = 12}};
   const testing::CameraParts parts(compile(singlet), film, ModelKind::exact_double);
-  const Camera camera = camera_with(compile(singlet), film, parts.model);
+  const Camera camera = Camera(compile(singlet), film, {.model = ModelKind::exact_double});
   EXPECT_EQ(parts.pupils().area({}), 0);
   const core_detail::Kronecker<5> random(5);
   int seen = 0, missed = 0;

@@ -87,7 +87,7 @@ class TiltedFilms : public ::testing::TestWithParam<Case> {};
 TEST_P(TiltedFilms, SamplesPassAndCoverThePupil) {
   const Lens lens = GetParam().focused();
   const testing::CameraParts parts(lens, GetParam().tilted_film(), ModelKind::exact_double);
-  const Camera camera = camera_with(lens, GetParam().tilted_film(), parts.model);
+  const Camera camera(lens, GetParam().tilted_film(), {.model = ModelKind::exact_double});
   const camera_detail::TiltedFilm& tilted = *parts.tilted;
   const Film pose = pose_of(lens, camera.film());
   const double z = parts.pupils().space().pupil_z;

@@ -19,8 +19,8 @@ namespace petzval {
 /// off by up to 2 % at f/1.35. Polynomials keep the irradiance within 1 % for distributions up to 200 and are 8 % too
 /// bright at 1000.
 ///
-/// Limitations: the model thin_two_disc with a round stop, custom models, and lenses whose stop has no rim apply the
-/// weights to the clipped pupil of each film point, so that a cat's eye gets a bright rim of its own. The other
+/// Limitations: the model thin_two_disc with a round stop, and lenses whose stop has no rim apply the weights
+/// to the clipped pupil of each film point, so that a cat's eye gets a bright rim of its own. The other
 /// first-order models apply them to the paraxial image of the stop.
 struct BokehControls {
   int blades = 0;  ///< number of straight blades, 3 to 20; 0: the iris of the lens

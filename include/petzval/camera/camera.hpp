@@ -226,7 +226,7 @@ class PETZVAL_API Camera {
 ///
 /// @param camera  a camera with exact rays or polynomials, an upright film and a pupil without weights
 /// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
-///                expressive lens, if it has transmission, or if the model is of first order or custom
+///                expressive lens, if it has transmission, or if the model is of first order
 ///
 /// Limitations: tables of polynomials have only the compiled wavelengths.
 PETZVAL_API std::vector<float> camera_table(const Camera& camera);

@@ -22,16 +22,7 @@ namespace petzval {
 /// to 5 % too bright; for lenses faster than f/0.31 they are useless.
 class ModelKind {
  public:
-  enum class Family : std::uint8_t {
-    pinhole,
-    thin,
-    thin_two_disc,
-    thick,
-    polynomial,
-    exact_float,
-    exact_double,
-    custom
-  };
+  enum class Family : std::uint8_t { pinhole, thin, thin_two_disc, thick, polynomial, exact_float, exact_double };
 
   /// First order; every ray passes the centre of the pupil.
   static const ModelKind pinhole;
@@ -47,14 +38,13 @@ class ModelKind {
   static constexpr ModelKind polynomial(int degree) noexcept;
   /// Rays traced through every surface, in float or double.
   static const ModelKind exact_float, exact_double;
-  /// A model added to the library (lib/docs/contributors.md).
-  static const ModelKind custom;
 
   constexpr ModelKind() noexcept = default;
   constexpr Family family() const noexcept { return family_; }
   constexpr int degree() const noexcept { return degree_; }  ///< of a polynomial; 0 for other models
   constexpr bool is_first_order() const noexcept { return family_ <= Family::thick; }
   constexpr bool is_polynomial() const noexcept { return family_ == Family::polynomial; }
+  constexpr bool is_exact() const noexcept { return family_ >= Family::exact_float; }
   friend constexpr auto operator<=>(const ModelKind&, const ModelKind&) noexcept = default;
 
  private:
@@ -70,11 +60,10 @@ inline constexpr ModelKind ModelKind::thin_two_disc{Family::thin_two_disc};
 inline constexpr ModelKind ModelKind::thick{Family::thick};
 inline constexpr ModelKind ModelKind::exact_float{Family::exact_float};
 inline constexpr ModelKind ModelKind::exact_double{Family::exact_double};
-inline constexpr ModelKind ModelKind::custom{Family::custom};
 constexpr ModelKind ModelKind::polynomial(int degree) noexcept { return ModelKind(Family::polynomial, degree); }
 
-/// "pinhole", "thin", "thin_two_disc", "thick", "polynomial_3", ..., "exact_float", "exact_double" or "custom";
-/// "unknown" for polynomials of another degree.
+/// "pinhole", "thin", "thin_two_disc", "thick", "polynomial_3", ..., "exact_float" or "exact_double"; "unknown" for
+/// polynomials of another degree.
 PETZVAL_API std::string_view name(ModelKind model) noexcept;
 /// The built-in model with a name; nullopt if there is no such model.
 PETZVAL_API std::optional<ModelKind> model_named(std::string_view name) noexcept;
