@@ -23,7 +23,6 @@ namespace petzval {
 ///     auto pupils = petzval::FilmPupilTable::equal_area(lens, 21.6);
 ///     auto polynomial = petzval::RayPolynomial::fit(lens, pupils, 7);
 ///     polynomial.to_scene<float>(count, lines, {}, rays, fates);
-///     petzval::write_ray_polynomial(polynomial, "lens_polynomial.json");
 ///
 /// Wavelengths in nm between the fits are interpolated from up to four neighbouring fits, equal to a fit at its
 /// wavelength within a twentieth of the fit's largest error and 6e-7 rad. Immutable, cheap to copy, thread-safe.

@@ -10,13 +10,11 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "io/ray_polynomial_json.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/figure/lens_figures.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::testing {
 
@@ -29,7 +27,6 @@ struct Writer {
 inline std::vector<Writer> writers() {
   const Prescription lens = data_prescription("double_gauss_100mm_f2_28deg");
   const Lens compiled = compile(lens);
-  const RayPolynomial polynomial = RayPolynomial::fit(compiled, FilmPupilTable::equal_area(compiled, 7), 3);
   RgbImage image(32, 24);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 101) / 101;
   FragmentLists lists{.columns = 8, .rows = 6, .offsets = {0}, .fragments = {}};
@@ -42,7 +39,6 @@ inline std::vector<Writer> writers() {
   const PsfSetPoint point{.field_deg = 7, .distance_mm = 1000, .wavelength_nm = 587.5618, .f_number = 2};
   return {
       {"lens.json", [=](const auto& file) { write_prescription(lens, file); }},
-      {"polynomial.json", [=](const auto& file) { write_ray_polynomial(polynomial, file); }},
       {"image.exr", [=](const auto& file) { write_exr(image, file); }},
       {"psf_set.exr",
        [=](const auto& file) {

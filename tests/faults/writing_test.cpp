@@ -83,7 +83,6 @@ TEST_F(Writing, WithoutMemoryReadsCompletelyOrFails) {
   const auto pixels = [](const RgbImage& image) { return bits(std::span<const float>(image.pixels)); };
   const std::vector<std::pair<std::string, std::function<std::string(const fs::path&)>>> readers{
       {"lens.json", [](const auto& file) { return format_prescription(read_prescription(file)); }},
-      {"polynomial.json", [](const auto& file) { return format_ray_polynomial(read_ray_polynomial(file)); }},
       {"image.png", [&](const auto& file) { return pixels(read_png(file)); }},
       {"image.png", [](const auto& file) { return bits(std::span<const float>(read_iris_map(file).values)); }},
       {"image.pfm", [&](const auto& file) { return pixels(read_pfm(file)); }},

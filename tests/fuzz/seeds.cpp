@@ -8,13 +8,11 @@
 #include <random>
 
 #include "../data_lenses.hpp"
-#include "io/ray_polynomial_json.hpp"
 #include "laws.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/petzval.h"
-#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::fuzz {
 namespace {
@@ -113,18 +111,6 @@ Texts all_lens_texts() {
 Texts agf_texts() { return {sample("every_formula.agf")}; }
 Texts rii_texts() { return {seed("rii_formula.yml"), seed("rii_table.yml")}; }
 Texts glass_tables() { return {bytes_of(fs::path(PETZVAL_TEST_DATA) / "glass" / "glass_misc.csv")}; }
-
-Texts ray_polynomials() {
-  Texts result;
-  for (const char* id : {"singlet_50mm_biconvex", "cylinder_3.9mm"}) {
-    done([&] {
-      const Lens lens = testing::data_lens(id);
-      const auto polynomial = RayPolynomial::fit(lens, FilmPupilTable::equal_area(lens, 2), 3);
-      result.push_back(format_ray_polynomial(polynomial));
-    });
-  }
-  return result;
-}
 
 Texts scene_texts() { return {seed("scene.json")}; }
 Texts obj_texts() { return {seed("mesh.obj")}; }

@@ -23,7 +23,6 @@ std::vector<std::string> all_lens_texts();
 std::vector<std::string> agf_texts();
 std::vector<std::string> rii_texts();
 std::vector<std::string> glass_tables();
-std::vector<std::string> ray_polynomials();
 std::vector<std::string> exr_files();
 std::vector<std::string> deep_exr_files();
 std::vector<std::string> png_files();

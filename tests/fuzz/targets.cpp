@@ -8,9 +8,9 @@
 // The functions LLVMFuzzerTestOneInput of the targets, under the names of their files.
 extern "C" {
 using Fuzzed = int(const std::uint8_t*, std::size_t);
-Fuzzed fuzz_lens_file, fuzz_glass_file, fuzz_ray_polynomial, fuzz_first_order, fuzz_trace, fuzz_pupil, fuzz_focus,
-    fuzz_camera, fuzz_camera_calls, fuzz_c_calls, fuzz_camera_setup, fuzz_camera_table, fuzz_table_calls, fuzz_psf,
-    fuzz_gather, fuzz_written_lens;
+Fuzzed fuzz_lens_file, fuzz_glass_file, fuzz_first_order, fuzz_trace, fuzz_pupil, fuzz_focus, fuzz_camera,
+    fuzz_camera_calls, fuzz_c_calls, fuzz_camera_setup, fuzz_camera_table, fuzz_table_calls, fuzz_psf, fuzz_gather,
+    fuzz_written_lens;
 #ifdef PETZVAL_FUZZ_FITS
 Fuzzed fuzz_focus_points;
 #endif
@@ -40,7 +40,6 @@ std::span<const Target> targets() {
       Target{"agf", "glass_file", fuzz_glass_file, agf_texts, 8192, 600},
       Target{"rii", "glass_file", fuzz_glass_file, rii_texts, 4096, 600},
       Target{"glass_csv", "glass_file", fuzz_glass_file, glass_tables, 4096, 600},
-      Target{"ray_polynomial", "ray_polynomial", fuzz_ray_polynomial, ray_polynomials, 16384, 600},
 #ifdef PETZVAL_FUZZ_PICTURES
       Target{"exr", "picture_file", fuzz_picture_file, exr_files, 2048, 600},
       Target{"deep_exr", "picture_file", fuzz_picture_file, deep_exr_files, 2048, 600},

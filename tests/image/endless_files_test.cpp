@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "../expect_error.hpp"
-#include "io/ray_polynomial_json.hpp"
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/formats/lens_file.hpp"
@@ -39,7 +38,6 @@ const std::vector<std::pair<std::string, Read>> of_bytes = {
        fs::create_symlink(fs::absolute(file), folder / "glass_x.csv");
        GlassCatalogue::load(folder);
      }},
-    {"polynomial", [](const fs::path& file) { read_ray_polynomial(file); }},
     {"floats", [](const fs::path& file) { read_floats(file); }},
     {"spectrum", [](const fs::path& file) { Spectrum::load(file); }},
     {"colour matching functions", [](const fs::path& file) { ColourMatching::load(file); }},
