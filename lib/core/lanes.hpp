@@ -310,6 +310,12 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
   __builtin_memcpy(to, &x.v, sizeof x.v);
 }
 
+/// sum_of_products() of numbers in registers.
+template <class R>
+PETZVAL_INLINE Lanes<R> sum_of_products(Lanes<R> a, Lanes<R> b, Lanes<R> c, Lanes<R> d) noexcept {
+  return sum_of_products(a.v, b.v, c.v, d.v);
+}
+
 /// Loads from[index] in the lanes of a mask; the other lanes are 0.
 PETZVAL_INLINE Lanes<float> gather(const float* from, Native<float>::Bits indices, Mask<float> mask) noexcept {
 #if defined(__AVX512F__)

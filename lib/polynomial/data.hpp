@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "lens/between_wavelengths.hpp"
@@ -17,9 +18,10 @@ struct RayPolynomial::Data {
   template <class R>
   struct In {
     polynomial_detail::Scales<R> scales;
-    std::vector<R> coefficients = {};       ///< by wavelength, as in ToSceneJob
-    lens_detail::AlignedRows<R> rows = {};  ///< the coefficients in rows, one row per coefficient
-    std::vector<R> modes = {};              ///< coefficients by mode
+    polynomial_detail::Scales<R> empty_domain;  ///< film points become NaN
+    std::vector<R> coefficients = {};           ///< by wavelength, as in ToSceneJob
+    lens_detail::AlignedRows<R> rows = {};      ///< the coefficients in rows, one row per coefficient
+    std::vector<R> modes = {};                  ///< coefficients by mode
   };
 
   int degree;
@@ -29,8 +31,7 @@ struct RayPolynomial::Data {
   lens_detail::CompiledWavelengths wavelengths;
   std::size_t modes;  ///< number of modes
   lens_detail::BetweenWavelengths<polynomial_detail::most_modes> mode_weights;
-  In<float> in_float{};
-  In<double> in_double{};
+  std::tuple<In<float>, In<double>> in{};
 
   Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
 
@@ -42,6 +43,19 @@ struct RayPolynomial::Data {
   };
   template <class R>
   const R* coefficients(Wavelength wavelength, CoefficientBuffer<R>& nm) const noexcept;
+  /// A fit and the domain in which it holds. If there is no fit, the domain contains no line, and the coefficients are
+  /// those of another fit.
+  template <class R>
+  struct Fitted {
+    const R* coefficients;
+    const polynomial_detail::Scales<R>& scales;
+  };
+  template <class R>
+  Fitted<R> fitted(Wavelength wavelength, CoefficientBuffer<R>& nm) const noexcept {
+    const In<R>& all = std::get<In<R>>(in);
+    const R* const found = coefficients(wavelength, nm);
+    return {found ? found : all.coefficients.data(), found ? all.scales : all.empty_domain};
+  }
 
   /// Index of symmetry and degree in the tables of loops.
   std::size_t loop() const noexcept {
@@ -60,29 +74,11 @@ inline std::array<RayPolynomial::Domain::Section, 2> sections(const RayPolynomia
   return {domain.along_x.value_or(along_y), along_y};
 }
 
-template <class R>
-const auto& in(const auto& data) noexcept {
-  if constexpr (sizeof(R) == sizeof(float)) {
-    return data.in_float;
-  } else {
-    return data.in_double;
-  }
-}
-
-template <class R>
-const ToSceneLoops<R>& to_scene_loops() noexcept {
-  if constexpr (sizeof(R) == sizeof(float)) {
-    return polynomial_loops().in_float;
-  } else {
-    return polynomial_loops().in_double;
-  }
-}
-
 }  // namespace polynomial_detail
 
 template <class R>
 const R* RayPolynomial::Data::coefficients(Wavelength wavelength, CoefficientBuffer<R>& buffer) const noexcept {
-  const std::vector<R>& all = polynomial_detail::in<R>(*this).coefficients;
+  const std::vector<R>& all = std::get<In<R>>(in).coefficients;
   const std::size_t each = all.size() / fits.size();
   const auto nm = wavelength.in_nm();
   if (!nm) {
@@ -91,7 +87,7 @@ const R* RayPolynomial::Data::coefficients(Wavelength wavelength, CoefficientBuf
   }
   if (!wavelengths.covers(*nm)) return nullptr;
   const auto weights = mode_weights(*nm);
-  const R* mode = polynomial_detail::in<R>(*this).modes.data();
+  const R* mode = std::get<In<R>>(in).modes.data();
   std::fill_n(buffer.coefficients.begin(), each, R(0));
   for (std::size_t k = 0; k < modes; ++k, mode += each) {
     const R weight = static_cast<R>(weights[k]);

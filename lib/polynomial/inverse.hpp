@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/scalar.hpp"
 #include "sums.hpp"
@@ -13,15 +12,19 @@
 namespace petzval::polynomial_detail {
 namespace {
 
-using kernel::all_of, kernel::any, kernel::select, kernel::without;
+using kernel::absolute, kernel::any, kernel::any_of, kernel::without;
 using std::sqrt;
 
-/// f and p, scaled to the domain, or s and o.
-template <class V>
-using Four = std::array<V, 4>;
 /// Derivatives of s and o, [row][column], with respect to f and p.
 template <class V>
 using Slopes = std::array<Four<V>, 4>;
+
+/// s and o at a point, with their derivatives.
+template <class V>
+struct At {
+  Four<V> value;
+  Slopes<V> slope;
+};
 
 /// Value of a polynomial and its derivatives with respect to the last N variables, in their order. Most multiplications
 /// of Horner's rule are by the last variable, and there only one derivative must be computed.
@@ -74,8 +77,10 @@ PETZVAL_INLINE Gradient<N, V> operator+(const Gradient<N, V>& p, double q) noexc
 /// s and o at (f, p) with their derivatives: A f + B p, through the derivatives of A and B with respect to u, v and w.
 /// Flattened, because compilers do not inline this much code otherwise.
 template <int n, class V>
-[[gnu::flatten]] void evaluate(OfRevolution<n>, const double* c, const Four<V>& x, Four<V>& value,
-                               Slopes<V>& slope) noexcept {
+[[gnu::flatten]] At<V> evaluate(OfRevolution<n>, const double* c, const Four<V>& x) noexcept {
+  At<V> at;
+  Four<V>& value = at.value;
+  Slopes<V>& slope = at.slope;
   const Variable<1, V> u{x[0] * x[0] + x[1] * x[1]};
   const Variable<2, V> v{x[0] * x[2] + x[1] * x[3]};
   const Variable<3, V> w{x[2] * x[2] + x[3] * x[3]};
@@ -99,14 +104,17 @@ template <int n, class V>
   };
   put(0, horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u));
   put(2, horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u));
+  return at;
 }
 
 /// The same, with derivatives of A and B with respect to the squares of fx, fy, px and py and to the product of film
 /// and pupil coordinates along the other axis.
 template <int n, class V>
-[[gnu::flatten]] void evaluate(OfMirrors<n>, const double* c, const Four<V>& x, Four<V>& value,
-                               Slopes<V>& slope) noexcept {
+[[gnu::flatten]] At<V> evaluate(OfMirrors<n>, const double* c, const Four<V>& x) noexcept {
   using Mirrors = OfMirrors<n>;
+  At<V> at;
+  Four<V>& value = at.value;
+  Slopes<V>& slope = at.slope;
   for (const std::size_t axis : {0, 1}) {
     const std::size_t other = 1 - axis;
     const V film = x[axis], pupil = x[axis + 2], other_film = x[other], other_pupil = x[other + 2];
@@ -133,17 +141,7 @@ template <int n, class V>
       }
     }
   }
-}
-
-/// True if the squares of the film and the pupil point are at most `square`.
-template <class V>
-PETZVAL_INLINE auto within(const Four<V>& x, double square) noexcept {
-  return all_of(x[0] * x[0] + x[1] * x[1] <= V(square), x[2] * x[2] + x[3] * x[3] <= V(square));
-}
-
-template <class V>
-PETZVAL_INLINE V magnitude(const V& x) noexcept {
-  return select(x < V(0.0), V(0.0) - x, x);
+  return at;
 }
 
 /// Solves a linear system by elimination; the pivot is the largest element of each column.
@@ -151,7 +149,7 @@ template <class V>
 PETZVAL_INLINE Four<V> solution(Slopes<V> a, Four<V> b) noexcept {
   for (std::size_t k = 0; k < 4; ++k) {
     for (std::size_t i = k + 1; i < 4; ++i) {
-      const auto larger = magnitude(a[k][k]) < magnitude(a[i][k]);
+      const auto larger = absolute(a[k][k]) < absolute(a[i][k]);
       const auto exchange = [&](V& x, V& y) {
         const V first = select(larger, y, x);
         y = select(larger, x, y);
@@ -209,8 +207,32 @@ PETZVAL_INLINE Four<V> chief(OfRevolution<n>, const double* c, const Four<V>& li
   return {scale * line[0], scale * line[1], none, none};
 }
 
-/// Bounds of Newton's iteration. The square of a settled step is its error.
-inline constexpr double divergence_square = 2, converged_step = 1e-7, rounding = 1e-9;
+/// Newton's iteration with full steps, from a point with known value and derivatives. It fails if a step is longer than
+/// half of the previous step, because the iteration may then reach another branch of the polynomial, or if the
+/// iteration moves far from the domain. Returns the lanes that converged, inside or outside the domain.
+template <class Symmetry, class V>
+kernel::Mask<V> converge(Symmetry symmetry, const double* c, const Four<V>& target, At<V> at, Four<V>& x) noexcept {
+  constexpr double divergence_square = 2, converged_step = 1e-7, rounding = 1e-9;  // the square of a step is its error
+  constexpr int max_iterations = 12;  // iterations that converge take three or four steps
+  const V none(0.0), one(1.0);
+  auto active = none < one, done = one < none;
+  V last(1e300);
+  for (int i = 1;; ++i) {
+    Four<V> rest;
+    for (std::size_t k = 0; k < 4; ++k) rest[k] = target[k] - at.value[k];
+    const Four<V> move = solution(at.slope, rest);
+    for (std::size_t k = 0; k < 4; ++k) x[k] = select(active, x[k] + move[k], x[k]);
+    const V length = sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
+    active = all_of(active, within(x, divergence_square));
+    const auto halved = length < last * V(0.5);
+    const auto settled = any_of(length < V(converged_step), without(length < V(rounding), halved));
+    done = any_of(done, all_of(active, settled));
+    active = without(all_of(active, halved), done);
+    if (i == max_iterations || !any(active)) return done;
+    last = length;
+    at = evaluate(symmetry, c, x);
+  }
+}
 
 }  // namespace
 }  // namespace petzval::polynomial_detail

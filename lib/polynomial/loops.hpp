@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "core/widest.hpp"
 #include "lens/wavelength_rows.hpp"
@@ -45,16 +46,17 @@ struct Modes {
 
 template <class R>
 struct ToSceneJob {
-  const R* coefficients;  ///< by wavelength: film and pupil coefficients of direction, then of offset
+  const R* coefficients;  ///< film and pupil coefficients of direction, then of offset; by wavelength if rays have
+                          ///< positions
   const R* rows;          ///< one row for each coefficient, by wavelength
   std::size_t row_length;
-  std::size_t fits, primary;
+  std::size_t fits;
   Modes<R> modes;
   Scales<R> scales;
   std::size_t count;
-  TwoPlaneRays<const R> lines;
+  const R* lines[4];  ///< film x, y, pupil x, y
   RayWavelengths wavelengths;
-  RayArrays<R> rays;
+  R* rays[6];  ///< origin, direction
   RayFate* fates;
 };
 
@@ -62,15 +64,13 @@ template <class R>
 using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
 /// Maps one line.
-/// @param coefficients coefficients at the wavelength of the line; null if there is no fit
 using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
                                           Ray<double>&) noexcept,
                               2 * degree_count>;
 
 /// Tables indexed by Data::loop().
 struct PolynomialLoops {
-  ToSceneLoops<float> in_float;
-  ToSceneLoops<double> in_double;
+  std::tuple<ToSceneLoops<float>, ToSceneLoops<double>> batches;
   OneToScene one;
 };
 

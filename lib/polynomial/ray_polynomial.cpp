@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -99,6 +100,8 @@ void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<std
   const auto [along_x, along_y] = polynomial_detail::sections(domain);
   in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.reference_z), scales(along_x),
                scales(along_y)};
+  in.empty_domain = in.scales;
+  in.empty_domain.per_film_radius = std::numeric_limits<R>::quiet_NaN();
   const auto append = [](std::vector<R>& to, const std::vector<double>& from) {
     std::transform(from.begin(), from.end(), std::back_inserter(to),
                    [](double value) { return static_cast<R>(value); });
@@ -137,8 +140,8 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
   const auto found = polynomial_detail::find_modes(fits, coefficients);
   modes = found.modes.size();
   mode_weights = {wavelengths, found.weights};
-  round_to<float>(in_float, domain, coefficients, found.modes);
-  round_to<double>(in_double, domain, coefficients, found.modes);
+  round_to<float>(std::get<In<float>>(in), domain, coefficients, found.modes);
+  round_to<double>(std::get<In<double>>(in), domain, coefficients, found.modes);
 }
 
 void polynomial_detail::check_degree(const std::string& where, int degree) {
@@ -187,30 +190,29 @@ template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   const Data& data = *data_;
-  const auto& in = polynomial_detail::in<T>(data);
-  const auto to_scene = polynomial_detail::to_scene_loops<T>()[data.loop()];
+  const auto& in = std::get<Data::In<T>>(data.in);
+  const auto to_scene =
+      std::get<polynomial_detail::ToSceneLoops<T>>(polynomial_detail::polynomial_loops().batches)[data.loop()];
   Data::CoefficientBuffer<T> buffer;
-  const bool blended = !wavelengths.each_nm && wavelengths.in_nm();
-  const T* own = blended ? data.coefficients(wavelengths.all, buffer) : nullptr;
-  to_scene({own ? own : in.coefficients.data(),
+  const auto [coefficients, scales] = data.fitted<T>(wavelengths.shared() ? wavelengths.all : Wavelength(0), buffer);
+  to_scene({coefficients,
             in.rows.data(),
             in.rows.length(),
             data.fits.size(),
-            data.primary,
             {in.modes.data(), data.modes, data.mode_weights.rows<T>()},
-            in.scales,
+            scales,
             count,
-            lines,
-            own ? RayWavelengths{0} : wavelengths,
-            rays,
+            {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y},
+            wavelengths,
+            {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz},
             fates});
 }
 
 RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const Data& data = *data_;
   Data::CoefficientBuffer<double> buffer;
-  const double* const coefficients = data.coefficients(wavelength, buffer);
-  return polynomial_detail::polynomial_loops().one[data.loop()](coefficients, data.in_double.scales, line, ray);
+  const auto [coefficients, scales] = data.fitted<double>(wavelength, buffer);
+  return polynomial_detail::polynomial_loops().one[data.loop()](coefficients, scales, line, ray);
 }
 
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,

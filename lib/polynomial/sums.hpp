@@ -5,54 +5,48 @@
 
 #include <array>
 
+#include "core/scalar.hpp"
 #include "horner.hpp"
+#include "loops.hpp"
 
 namespace petzval::polynomial_detail {
 namespace {
 
-using core_detail::sum_of_products;
+using core_detail::sum_of_products, kernel::all_of, kernel::select;
 
-/// Film and pupil point, scaled to the domain.
-template <class T>
-struct FilmAndPupil {
-  T fx, fy, px, py;
+/// (fx, fy, px, py): film and pupil point, in mm or scaled to the domain; or (sx, sy, ox, oy): a line (chart.hpp); or
+/// four sums of terms.
+template <class V>
+using Four = std::array<V, 4>;
 
-  PETZVAL_INLINE T film_square() const noexcept { return sum_of_products(fx, fx, fy, fy); }
-  PETZVAL_INLINE T pupil_square() const noexcept { return sum_of_products(px, px, py, py); }
-};
-
-/// Scales a line from mm to the domain. R: plain type of T. Scaling: Scales<R>.
-template <class R, class T, class Scaling>
-PETZVAL_INLINE FilmAndPupil<T> in_domain(const Scaling& scales, const FilmAndPupil<T>& line) noexcept {
+/// Scales a line from mm to the domain.
+template <class V>
+PETZVAL_INLINE Four<V> in_domain(const Scales<kernel::Storage<V>>& scales, const Four<V>& line) noexcept {
   const auto& [film_x, film_y, pupil_x, pupil_y] = line;
   return {film_x * scales.per_film_radius, film_y * scales.per_film_radius,
           (pupil_x - scales.along_x.pupil_shift * film_x) * scales.along_x.per_pupil_radius,
           (pupil_y - scales.along_y.pupil_shift * film_y) * scales.along_y.per_pupil_radius};
 }
 
-template <class T>
-struct FourSums {
-  T first, second, third, fourth;
-};
+/// True if the squares of the film and the pupil point are at most `square`.
+template <class V>
+PETZVAL_INLINE kernel::Mask<V> within(const Four<V>& x, double square) noexcept {
+  const V limit(static_cast<kernel::Storage<V>>(square));
+  return all_of(sum_of_products(x[0], x[0], x[1], x[1]) <= limit, sum_of_products(x[2], x[2], x[3], x[3]) <= limit);
+}
 
-template <class T>
-struct ChartLine {
-  T sx, sy, ox, oy;
-};
+/// Origin, relative to the reference point, and direction.
+template <class V>
+using LocalRay = std::array<V, 6>;
 
-template <class T>
-struct LocalRay {
-  T x, y, z;  ///< relative to the reference point
-  T dx, dy, dz;
-};
-
-/// Converts a line from the chart to a ray (chart.hpp). R: plain type of T.
-template <class R, class T>
-PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
+/// Converts a line from the chart to a ray (chart.hpp). The line (0, 0, 0, 0) is the axis.
+template <class V>
+PETZVAL_INLINE LocalRay<V> out_of_chart(const Four<V>& line) noexcept {
+  using R = kernel::Storage<V>;
   const auto& [sx, sy, ox, oy] = line;
-  const T square = sum_of_products(sx, sx, sy, sy);
-  const T twice = R(2) / (square + R(1));
-  const T along = twice * sum_of_products(sx, ox, sy, oy);
+  const V square = sum_of_products(sx, sx, sy, sy);
+  const V twice = R(2) / (square + R(1));
+  const V along = twice * sum_of_products(sx, ox, sy, oy);
   return {ox - sx * along, oy - sy * along, along, twice * sx, twice * sy, twice * (square - R(1)) / R(2)};
 }
 
@@ -60,31 +54,31 @@ PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
 template <int n>
 struct OfRevolution {
   static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
-  /// True: these sums have the same bits in all code, because they leave a compiler no choice of products to fuse.
-  static constexpr bool same_bits = true;
 
-  template <class T>
+  template <class V>
   struct Variables {
-    T u, v, w;
+    V u, v, w;
   };
-  template <class T>
-  static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
-    return {at.film_square(), sum_of_products(at.fx, at.px, at.fy, at.py), at.pupil_square()};
+  template <class V>
+  static PETZVAL_INLINE Variables<V> variables(const Four<V>& at) noexcept {
+    const auto& [fx, fy, px, py] = at;
+    return {sum_of_products(fx, fx, fy, fy), sum_of_products(fx, px, fy, py), sum_of_products(px, px, py, py)};
   }
   /// A, B, C and D.
   /// @param c as in horner()
-  template <class C, class T>
-  static PETZVAL_INLINE FourSums<T> sums(const C& c, const Variables<T>& at) noexcept {
+  template <class C, class V>
+  static PETZVAL_INLINE Four<V> sums(const C& c, const Variables<V>& at) noexcept {
     const auto& [u, v, w] = at;
     return {horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), horner<n>(c + 2 * terms, w, v, u),
             horner<n>(c + 3 * terms, w, v, u)};
   }
 
-  template <class T>
-  static PETZVAL_INLINE ChartLine<T> line(const FourSums<T>& sums, const FilmAndPupil<T>& at) noexcept {
+  template <class V>
+  static PETZVAL_INLINE Four<V> line(const Four<V>& sums, const Four<V>& at) noexcept {
     const auto& [a, b, by_film, by_pupil] = sums;
-    return {sum_of_products(a, at.fx, b, at.px), sum_of_products(a, at.fy, b, at.py),
-            sum_of_products(by_film, at.fx, by_pupil, at.px), sum_of_products(by_film, at.fy, by_pupil, at.py)};
+    const auto& [fx, fy, px, py] = at;
+    return {sum_of_products(a, fx, b, px), sum_of_products(a, fy, b, py), sum_of_products(by_film, fx, by_pupil, px),
+            sum_of_products(by_film, fy, by_pupil, py)};
   }
 };
 
@@ -94,40 +88,71 @@ struct OfRevolution {
 template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
-  static constexpr bool same_bits = false;
 
-  template <class T>
-  using Variables = FilmAndPupil<T>;
-  template <class T>
-  static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
+  template <class V>
+  using Variables = Four<V>;
+  template <class V>
+  static PETZVAL_INLINE Variables<V> variables(const Four<V>& at) noexcept {
     return at;
   }
-  /// s and o themselves. Not inlined: one function per degree gives every caller the same bits.
-  template <class R, class T>
-  static __attribute__((noinline)) FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {
+  /// s and o themselves. Not inlined: the code is long.
+  template <class C, class V>
+  static __attribute__((noinline)) Four<V> sums(const C& c, const Four<V>& at) noexcept {
     const auto& [fx, fy, px, py] = at;
-    const T fx2 = fx * fx, fy2 = fy * fy, px2 = px * px, py2 = py * py, across_x = fx * px, across_y = fy * py;
-    const auto x = [&](const R* of) { return even_sum(of, across_y, py2, fy2, px2, fx2); };
-    const auto y = [&](const R* of) { return even_sum(of, across_x, px2, fx2, py2, fy2); };
-    const R* o = c + 4 * terms;
-    return {fx * x(c) + px * x(c + 2 * terms), fy * y(c + terms) + py * y(c + 3 * terms),
-            fx * x(o) + px * x(o + 2 * terms), fy * y(o + terms) + py * y(o + 3 * terms)};
+    const V fx2 = fx * fx, fy2 = fy * fy, px2 = px * px, py2 = py * py, across_x = fx * px, across_y = fy * py;
+    const auto x = [&](const C& of) { return even_sum(of, across_y, py2, fy2, px2, fx2); };
+    const auto y = [&](const C& of) { return even_sum(of, across_x, px2, fx2, py2, fy2); };
+    const C o = c + 4 * terms;
+    return {sum_of_products(fx, x(c), px, x(c + 2 * terms)), sum_of_products(fy, y(c + terms), py, y(c + 3 * terms)),
+            sum_of_products(fx, x(o), px, x(o + 2 * terms)), sum_of_products(fy, y(o + terms), py, y(o + 3 * terms))};
   }
 
-  template <class T>
-  static PETZVAL_INLINE ChartLine<T> line(const FourSums<T>& sums, const FilmAndPupil<T>&) noexcept {
-    return {sums.first, sums.second, sums.third, sums.fourth};
+  template <class V>
+  static PETZVAL_INLINE Four<V> line(const Four<V>& sums, const Four<V>&) noexcept {
+    return sums;
   }
 
  private:
   /// @param across product of film and pupil coordinates along the other axis
-  template <class R, class T>
-  static PETZVAL_INLINE T even_sum(const R* c, const T& across, const T& other_pupil2, const T& other_film2,
-                                   const T& pupil2, const T& film2) noexcept {
+  template <class C, class V>
+  static PETZVAL_INLINE V even_sum(const C& c, const V& across, const V& other_pupil2, const V& other_film2,
+                                   const V& pupil2, const V& film2) noexcept {
     return across * horner<n - 1>(c + even, other_pupil2, other_film2, pupil2, film2) +
            horner<n>(c, other_pupil2, other_film2, pupil2, film2);
   }
 };
+
+/// A ray, and the mask of lanes in the domain of a fit.
+template <class V>
+struct MappedRay {
+  kernel::Mask<V> inside;
+  LocalRay<V> ray;
+};
+
+/// Maps a line (mm) to a ray (lens frame); to the reference point along the axis if the line is not inside. There is no
+/// branch after the sums: compilers fuse a product with a sum only within a block of code.
+/// @param sums sums of terms, called with the variables of Symmetry and the mask `inside`, from which it removes lanes
+///   without a fit
+template <class Symmetry, class V, class Sums>
+PETZVAL_INLINE MappedRay<V> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
+                                const Sums& sums) noexcept {
+  const Four<V> at = in_domain(scales, line);
+  kernel::Mask<V> inside = within(at, within_domain);
+  const V axis(kernel::Storage<V>(0));
+  Four<V> chart = Symmetry::line(sums(Symmetry::variables(at), inside), at);
+  for (V& component : chart) component = select(inside, component, axis);
+  LocalRay<V> ray = out_of_chart(chart);
+  ray[2] = ray[2] + scales.reference_z;
+  return {inside, ray};
+}
+
+/// Maps a line by a fit.
+template <class Symmetry, class V>
+PETZVAL_INLINE MappedRay<V> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
+                                const kernel::Storage<V>* coefficients) noexcept {
+  return map<Symmetry>(scales, line,
+                       [&](const auto& variables, auto&) { return Symmetry::sums(coefficients, variables); });
+}
 
 /// Calls a function with each symmetry, for the degrees 3, 5, 7, 9 and 11; Data::loop() is the index.
 template <class Of>

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "chart.hpp"
 #include "data.hpp"
@@ -13,43 +12,15 @@ namespace {
 
 using polynomial_detail::horner;
 using polynomial_detail::OfMirrors;
-using polynomial_detail::OfRevolution;
 using FilmAndPupilPoint = polynomial_detail::Four<double>;
 
 FilmAndPupilPoint sum(const FilmAndPupilPoint& a, double factor, const FilmAndPupilPoint& b) noexcept {
   return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2], a[3] + factor * b[3]};
 }
 
-/// Value and derivatives of a polynomial at one point.
-struct At {
-  FilmAndPupilPoint value;
-  polynomial_detail::Slopes<double> slope;
-};
-
-/// Newton's iteration from a point with known value and derivatives. Returns false if a step is longer than half of the
-/// previous step, because the iteration may then reach another branch of the polynomial, or if the iteration moves far
-/// from the domain.
-template <class Symmetry>
-bool correct(const double* c, const FilmAndPupilPoint& target, const At& begin, FilmAndPupilPoint& x) noexcept {
-  At at = begin;
-  for (double last = std::numeric_limits<double>::infinity();;) {
-    const FilmAndPupilPoint move = polynomial_detail::solution(at.slope, sum(target, -1, at.value));
-    const double length = std::sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
-    x = sum(x, 1, move);
-    if (!polynomial_detail::within(x, polynomial_detail::divergence_square)) return false;
-    if (length < polynomial_detail::converged_step) return true;
-    if (!(length < last / 2)) return length < polynomial_detail::rounding;
-    last = length;
-    evaluate(Symmetry{}, c, x, at.value, at.slope);
-  }
-}
-
+/// The same for mirror symmetry.
 template <int n>
-FilmAndPupilPoint start(OfRevolution<n> symmetry, const double* c, const FilmAndPupilPoint& line) noexcept {
-  return chief(symmetry, c, line);
-}
-template <int n>
-FilmAndPupilPoint start(OfMirrors<n>, const double* c, const FilmAndPupilPoint& line) noexcept {
+FilmAndPupilPoint chief(OfMirrors<n>, const double* c, const FilmAndPupilPoint& line) noexcept {
   // Solves both sections independently; the combined point may lie outside the film.
   const auto along = [](double s, const double* of) {
     const double sign = of[0] < 0 ? -1 : 1;
@@ -67,18 +38,17 @@ FilmAndPupilPoint start(OfMirrors<n>, const double* c, const FilmAndPupilPoint& 
 /// domain.
 template <class Symmetry>
 bool follow(const double* c, const FilmAndPupilPoint& target, FilmAndPupilPoint& x) noexcept {
-  At at;
-  evaluate(Symmetry{}, c, x, at.value, at.slope);
+  auto at = evaluate(Symmetry{}, c, x);
   const FilmAndPupilPoint first = at.value;
   double left = 1, step = 1;
   while (left > 0) {
     const double next = std::max(left - step, 0.0);
     FilmAndPupilPoint there = x;
-    if (correct<Symmetry>(c, sum(target, next, sum(first, -1, target)), at, there)) {
+    if (converge(Symmetry{}, c, sum(target, next, sum(first, -1, target)), at, there)) {
       x = there;
       left = next;
       step *= 2;
-      if (left > 0) evaluate(Symmetry{}, c, x, at.value, at.slope);
+      if (left > 0) at = evaluate(Symmetry{}, c, x);
     } else if ((step /= 2) < 1.0 / 64) {
       return false;
     }
@@ -90,7 +60,7 @@ bool follow(const double* c, const FilmAndPupilPoint& target, FilmAndPupilPoint&
 /// and, if this fails, at the axis, because the first start may lie outside the fitted region.
 template <class Symmetry>
 bool solve(const double* c, const FilmAndPupilPoint& target, FilmAndPupilPoint& x) noexcept {
-  x = start(Symmetry{}, c, target);
+  x = chief(Symmetry{}, c, target);
   if (follow<Symmetry>(c, target, x)) return true;
   x = {};
   return follow<Symmetry>(c, target, x);
