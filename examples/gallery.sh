@@ -4,8 +4,9 @@
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
 #
-# Keeps pictures of an earlier run whose commands are the same. --full: scenes twice as large with sixteen times the samples, in
-# OUT/full (hours on two cores); a stopped rendering is resumed.
+# Keeps pictures of an earlier run whose commands are the same. --full: scenes twice as large with four times the samples, in
+# OUT/full (two hours on two cores); a stopped rendering is resumed. The page shows the scenes of an earlier run with --full first, from
+# pictures/full.
 set -eu
 if [ $# -lt 2 ] || [ $# -gt 3 ] || { [ $# -eq 3 ] && [ "$3" != --full ]; }; then
   echo "usage: sh examples/gallery.sh PROGRAMS OUT [--full]" >&2
@@ -13,8 +14,11 @@ if [ $# -lt 2 ] || [ $# -gt 3 ] || { [ $# -eq 3 ] && [ "$3" != --full ]; }; then
 fi
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 programs=$(CDPATH='' cd -- "$1" && pwd)
-out=$2 scale=1 more_samples=1 resume=
-if [ $# -eq 3 ]; then out=$2/full scale=2 more_samples=16 resume=' --resume'; fi
+out=$2 full=${3-}
+quick() { scale=1 more_samples=1 resume=; }
+large() { scale=2 more_samples=4 resume=' --resume'; }
+quick
+if [ "$full" ]; then out=$2/full && large; fi
 mkdir -p "$out/input"
 cp "$here"/scenes/*.json "$here/layers/table.sh" "$here"/pictures/view_*.jpg "$here"/../lib/docs/view/*.json "$out/input"
 # shellcheck source=SCRIPTDIR/gallery_page.sh
@@ -25,11 +29,27 @@ size() { echo "--size $(($1 * scale))x$(($2 * scale))"; }
 spp() { echo "--spp $(($1 * more_samples))$resume"; }
 
 wu_lenses="double_gauss_100mm_f1.35 double_gauss_100mm_f1.7_substitute double_gauss_100mm_f2_28deg"
-statues="petzval render double_gauss_52mm_f1.8 --scene statues --from entrance_pupil --integrator path $(size 600 400) $(spp 128)"
-table="petzval render double_gauss_100mm_f2_28deg --scene table --focus 920 $(size 600 400) $(spp 96)"
 
+# The scenes of --full as they were shipped, then as this run renders them.
 scenes() {
-  section scenes "Scenes through lenses" "Path tracing and bidirectional path tracing through every surface of a lens." halves
+  title="Scenes through lenses" words="Path tracing and bidirectional path tracing through every surface of a lens."
+  if [ -z "$full" ]; then
+    large
+    shipped=$here/pictures/full
+    section scenes_full "$title" "$words Rendered once with <code>sh examples/run.sh --full</code>; the next section has
+the same pictures as this machine renders them in minutes, with more noise." halves
+    each_scene
+    quick
+    shipped=
+    title="Quick renderings" words="The scenes above at a quarter of the size with a quarter of the samples."
+  fi
+  section scenes "$title" "$words" halves
+  each_scene
+}
+
+each_scene() {
+  statues="petzval render double_gauss_52mm_f1.8 --scene statues --from entrance_pupil --integrator path $(size 600 400) $(spp 128)"
+  table="petzval render double_gauss_100mm_f2_28deg --scene table --focus 920 $(size 600 400) $(spp 96)"
   picture statues/near/picture.png "Two angels at dusk" "A Canon 51.6 mm f/1.8, focused on the angel at 1.5 m. The lamps in the
 background are discs, and cat's eyes towards the corners." <<END
 $statues --focus 1.5m --out statues/near

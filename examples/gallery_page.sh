@@ -11,6 +11,8 @@
 #   picture FILE TITLE CAPTION  runs the commands on standard input in FOLDER, which write FILE (.png, .svg, .html, .txt
 #                               or a table in .md);
 #                               CAPTION is HTML. Keeps FILE if the commands are the ones that made it and no program is newer.
+#                               With $shipped, a folder: shows a JPEG of that folder instead, named like FILE without /picture.png, whose
+#                               date and time are in made.txt; runs nothing
 #   also FILE TITLE CAPTION     shows another file of the commands before
 #
 # index.html is written after each picture. A figure whose commands failed says so, and gallery returns 1. FOLDER/made has the
@@ -33,8 +35,9 @@ section() {
 }
 
 picture() {
-  file=$1 made=$((made + 1))
   commands=$(cat)
+  if [ "${shipped-}" ]; then shipped_picture "$1" "$2" "$3"; return; fi
+  file=$1 made=$((made + 1))
   if [ "$counting" ]; then count=$((count + 1)); return 0; fi
   stamp=made/$(echo "$file" | tr / _).commands
   shown=$(printf '%s\n' "$commands" | escaped)
@@ -73,6 +76,16 @@ picture() {
   write_page "Still being made: $made of $count pictures. Reload the page for more."
 }
 
+shipped_picture() {
+  [ -z "$counting" ] || return 0
+  name=$(echo "${1%/picture.png}" | tr / _)
+  mkdir -p full_size
+  cp "$shipped/$name.jpg" full_size
+  shown=$(printf '%s\n' "$commands" | escaped) failure=
+  seconds= when=$(sed -n "s/^$name //p" "$shipped/made.txt")
+  figure "full_size/$name.jpg" "$2" "$3"
+}
+
 also() {
   [ -z "$counting" ] || return 0
   shown=''
@@ -98,7 +111,9 @@ figure() {
     printf '<figcaption><h3>%s</h3>\n<p>%s</p>\n' "$2" "$3"
     if [ "$shown" ]; then
       printf '<pre class="command">%s</pre>\n' "$shown"
-      [ -z "$seconds" ] || printf '<p class="time">%s</p>\n' "$(duration "$seconds")"
+      [ -z "$seconds" ] || when=$(duration "$seconds")
+      [ -z "${when-}" ] || printf '<p class="time">%s</p>\n' "$when"
+      when=
     fi
     printf '</figcaption></figure>\n'
   } > "$fragment"

@@ -5,7 +5,7 @@
 #
 #   sh examples/run.sh [--build-only | --full]
 #
-# --full makes the gallery with large scenes and little noise, in out/full (hours on two cores).
+# --full makes the gallery with large scenes and little noise, in out/full (two hours on two cores).
 # The programs are in build/examples/. A second run makes only what is missing.
 # BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere. UNITY=OFF compiles the sources separately.
 set -eu
