@@ -61,7 +61,7 @@ class Worker {
   std::shared_ptr<const Snapshot> snapshot() const;
   /// The file of --replay. Waits for the event under way.
   examples::Json log();
-  /// How many of the first events were refused, and the reason for the last; empty if none was.
+  /// The number of refused first events and the reason of the last refusal; empty without a refusal.
   const std::string& refused() const noexcept { return refused_; }
   /// True if the still picture of all events is shown.
   bool idle() const;

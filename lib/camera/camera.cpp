@@ -11,7 +11,6 @@
 #include "camera_data.hpp"
 #include "check_film.hpp"
 #include "core/low_discrepancy.hpp"
-#include "core/text.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
 

@@ -12,7 +12,6 @@
 
 #include "core/least_squares.hpp"
 #include "core/low_discrepancy.hpp"
-#include "exact_model.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
 #include "trace/lens_light.hpp"
