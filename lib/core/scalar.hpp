@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 // Lost rays are detected by comparisons with NaN and infinity, which these options allow the compiler to drop.
@@ -58,6 +60,29 @@ constexpr bool any_of(bool a, bool b) noexcept { return a || b; }
 
 /// True in the lanes in which `a` holds and `b` does not.
 constexpr bool without(bool a, bool b) noexcept { return a && !b; }
+
+/// Tables of numbers of type R, read at an index for each lane of the scalar `T`. lane_table.hpp has the form for lanes.
+template <class T>
+struct Table {
+  using Index = std::int32_t;
+
+  /// The whole part of a number that is not negative, and the number of an index.
+  static Index whole(const T& x) noexcept {
+    if constexpr (requires { x.a; }) {
+      return static_cast<Index>(x.a);
+    } else {
+      return static_cast<Index>(x);
+    }
+  }
+  static T number(Index i) noexcept { return T(static_cast<Storage<T>>(i)); }
+  /// n adjacent numbers of a table, from an index on.
+  template <int n, class R>
+  static std::array<T, n> rows(const R* from, Index at) noexcept {
+    std::array<T, n> result;
+    for (int k = 0; k < n; ++k) result[static_cast<std::size_t>(k)] = T(from[at + k]);
+    return result;
+  }
+};
 
 /// |x|, without the branch on the derivative at zero that a library function may contain.
 template <class T>
