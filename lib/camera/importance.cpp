@@ -264,12 +264,8 @@ void SceneSide::arrive(const RayModel& model, std::size_t count, const RayArrays
     }
   }
   const RayArrays<const double> straight{x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()};
-  if (transmission_) {
-    transmission_.to_film(model, count, straight, wavelengths, found.lines(), found.fates.data(),
-                          found.transmittance.data());
-  } else {
-    model.to_film(count, straight, wavelengths, found.lines(), found.fates.data());
-  }
+  model.to_film(count, straight, wavelengths, found.lines(), found.fates.data(), transmission_.light(),
+                found.transmittance.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (refusals[i] != RayFate::transmitted) found.fates[i] = refusals[i];
     found.met_x[i] = found.virtual_x[i] = found.upright_x[i];
@@ -303,7 +299,7 @@ void SceneSide::weigh(const RayModel& model, std::size_t count, const RayWavelen
   }
   if (transmission_) {
     std::array<double, block> transmittances = arrivals.transmittance;
-    transmission_.of_lines<double>(count, arrivals.upright_lines(), wavelengths, transmittances.data());
+    transmission_.fill<double>(count, arrivals.upright_lines(), wavelengths, transmittances.data());
     for (std::size_t i = 0; i < count; ++i) we[i] *= transmittances[i];
   }
   const double depth2 = squared(space_.depth());

@@ -129,11 +129,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
   alignas(64) Values<T> transmittances;
   const auto trace = [&] {
-    if (view.transmission) {
-      view.transmission.to_scene(view.model, n, lines, wavelengths, rays.rays, fates, transmittances.data());
-    } else {
-      view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
-    }
+    view.model.to_scene(n, lines, wavelengths, rays.rays, fates, view.transmission.light(), transmittances.data());
     if (view.focus) bend(view, n, samples, rays.rays);
     if (view.moves_rays()) {
       loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
@@ -145,7 +141,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
     if (view.weights)
       weigh_pupil(view, n, valid_count, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
     if (!view.transmission) return;
-    view.transmission.of_lines(n, lines, wavelengths, transmittances.data());
+    view.transmission.fill(n, lines, wavelengths, transmittances.data());
     for (std::size_t i = 0; i < valid_count; ++i) {
       rays.weights[i] *= transmittances[i];
       const bool dark = fates[i] == RayFate::transmitted && !(rays.weights[i] > T(0));
@@ -327,7 +323,7 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
 
 /// Sets weight, densities and fate of a sample.
 /// @param front moves the ray to this front; null if the ray starts at the front
-/// @param transmittance of an exact ray, else 1
+/// @param transmittance of an exact ray
 void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, double transmittance,
            CameraRay& out) noexcept {
   const bool decides = view.tilted && decide(view.pupils, view.model);
@@ -349,7 +345,7 @@ void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Fr
   }
   if (view.transmission && out.fate == RayFate::transmitted) {
     const auto& [x, y, u, v] = s.line;
-    view.transmission.of_lines<double>(1, {&x, &y, &u, &v}, {.all = wavelength}, &transmittance);
+    view.transmission.fill<double>(1, {&x, &y, &u, &v}, {.all = wavelength}, &transmittance);
     out.weight *= transmittance;
     if (!(out.weight > 0)) out.fate = RayFate::vignetted;
   }
@@ -369,9 +365,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   const Start s = start(view, film, u, v, wavelength, time, false);
   CameraRay out;
   double transmittance = 1;
-  out.fate = view.transmission
-                 ? view.transmission.to_scene(view.model, s.leaving.line, wavelength, out.ray, transmittance)
-                 : view.model.to_scene(s.leaving.line, wavelength, out.ray);
+  out.fate = view.model.to_scene(s.leaving.line, wavelength, out.ray, view.transmission.light(), &transmittance);
   if (view.focus) {
     view.focus.bend(s.film, view.tilted ? s.plane.distance_excess(s.virtual_point) : 0, wavelength, out.ray);
   }
@@ -393,7 +387,7 @@ CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint&
   double transmittance = 1;
   if (view.transmission) {  // derivatives do not change the light
     Ray<double> same;
-    view.transmission.to_scene(view.model, s.leaving.line, wavelength, same, transmittance);
+    view.model.to_scene(s.leaving.line, wavelength, same, view.transmission.light(), &transmittance);
   }
   weigh(view, s, wavelength, nullptr, transmittance, result.sample);
   if (!result.sample) return result;

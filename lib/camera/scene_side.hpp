@@ -68,7 +68,7 @@ class SceneSide {
     using Column = std::array<double, block>;
     Column upright_x, upright_y, pupil_x, pupil_y;  // image-space rays
     Column met_x, met_y, virtual_x, virtual_y;      // film points, virtual points; equal for an upright film
-    Column transmittance;                           // of exact rays; 1 for other models and without transmission
+    Column transmittance;                           // of exact rays
     Column facing, spread, cosine;  // TiltedPlane::weight(), LocalFocus::Straight::spread, cos of the angle to the axis
     std::array<RayFate, block> fates;
 

@@ -17,30 +17,19 @@ class PETZVAL_API Transmission {
  public:
   /// Not modelled: all light passes.
   Transmission() = default;
-  /// @param radius largest distance of a film point from the axis, mm
   /// @throws Error  if a compiled wavelength is outside a table of reflectances
-  Transmission(const Lens& lens, const RayModel& model, double radius);
+  Transmission(const Lens& lens, const RayModel& model);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
   /// Largest error, relative to all light; 0 if not modelled.
   double error() const noexcept;
 
-  /// As the function of the model with the same name, for an exact model with the transmittances of its rays. Another
-  /// model gets 1 here, and its transmittances from of_lines().
+  /// For the functions of a model, which writes the transmittances of exact rays; null if not modelled.
+  const trace_detail::LensLight* light() const noexcept;
+  /// Writes the transmittances of image-space rays. Does nothing for an exact model: light() makes it write its own.
   template <class T>
-  void to_scene(const RayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
-                const RayWavelengths& wavelengths, const RayArrays<T>& rays, RayFate* fates,
-                T* transmittances) const noexcept;
-  RayFate to_scene(const RayModel& model, const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
-                   double& transmittance) const noexcept;
-  void to_film(const RayModel& model, std::size_t count, const RayArrays<const double>& rays,
-               const RayWavelengths& wavelengths, const TwoPlaneRays<double>& lines, RayFate* fates,
-               double* transmittances) const noexcept;
-
-  /// Multiplies `transmittances` by the transmittances of image-space rays; does nothing for an exact model.
-  template <class T>
-  void of_lines(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                T* transmittances) const noexcept;
+  void fill(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+            T* transmittances) const noexcept;
 
  private:
   struct Data;

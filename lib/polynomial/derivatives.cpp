@@ -10,14 +10,14 @@ namespace {
 using kernel::Dual;
 using namespace polynomial_detail;
 
-using Map = MappedRay<Dual> (*)(const Scales<double>&, const Four<Dual>& line, const double* coefficients) noexcept;
+using Map = Mapped<Dual> (*)(const Scales<double>&, const Four<Dual>& line, const double* coefficients) noexcept;
 constexpr auto maps = by_symmetry_and_degree([]<class Symmetry>(Symmetry) -> Map { return map<Symmetry, Dual>; });
 
 }  // namespace
 
 RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavelength at) const noexcept {
-  Data::CoefficientBuffer<double> buffer;
-  const auto [coefficients, scales] = data_->fitted<double>(at, buffer);
+  WavelengthFits::Buffer<double> buffer;
+  const auto [coefficients, scales] = data_->by_wavelength.fitted<double>(at, buffer);
   const auto jet = [&](double TwoPlaneRay::*component) {
     return Dual(line.line.*component, {line.by_u.*component, line.by_v.*component});
   };

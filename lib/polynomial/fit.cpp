@@ -73,9 +73,7 @@ class Samples {
   std::vector<double> film_x_, film_y_, u_, v_;
 };
 
-/// Lines over film and pupils, from index `first` on: uniform by area or, if `dense`, denser towards the edges of film
-/// and pupil, like Chebyshev nodes. Denser lines reduce the largest errors by some tenths and raise the RMS by one
-/// tenth.
+/// The samples of polynomial_detail::spread().
 Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
   samples.reserve(count);
@@ -138,7 +136,7 @@ Samples edges(Samples samples, int turns) {
   return samples;
 }
 
-/// Shift and radius of the smallest disc that moves with the film point and contains the rims of all wavelengths; the
+/// Shift and radius of the smallest disc that moves with the film point and contains the lines of all wavelengths; the
 /// smallest interval if only x or only y is used.
 RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double film_radius, bool x_counts,
                                         bool y_counts) {
@@ -167,8 +165,21 @@ RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double f
   return {shift, std::sqrt(farthest(shift).square)};
 }
 
-/// Sets the smallest disc that contains the rims or, with mirror symmetry, an ellipse around the smallest rectangle.
-void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain& domain) {
+/// z of the entrance pupil, near which rays are given; 0 if the pupil is far from the lens.
+double reference_of(const Lens& lens) {
+  const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
+  const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;
+  return std::abs(z) <= longest ? z : 0;
+}
+
+}  // namespace
+
+Lines polynomial_detail::spread(const FilmPupilTable& pupils, bool mirrors, std::size_t first, std::size_t count,
+                                bool dense, std::size_t wavelength) {
+  return petzval::spread(Samples(pupils, mirrors), first, count, dense).lines(wavelength);
+}
+
+void polynomial_detail::enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain& domain) {
   constexpr double rim_margin = 1.01;  // corners lie between the directions searched
   auto along_y = smallest(rims, domain.film_radius, !mirrors, true);
   if (mirrors) {
@@ -187,15 +198,6 @@ void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain
   domain.pupil_shift = along_y.pupil_shift;
   domain.pupil_radius = rim_margin * along_y.pupil_radius;
 }
-
-/// z of the entrance pupil, near which rays are given; 0 if the pupil is far from the lens.
-double reference_of(const Lens& lens) {
-  const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
-  const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;
-  return std::abs(z) <= longest ? z : 0;
-}
-
-}  // namespace
 
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
@@ -220,7 +222,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   domain.space = pupils.space();
   domain.film_radius = pupils.film_radius();
   domain.reference_z = reference_of(lens);
-  enclose(all_rims, mirrors, domain);
+  polynomial_detail::enclose(all_rims, mirrors, domain);
   // Lenses with two sections need more lines: 12 equations per coefficient.
   const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
   constexpr std::size_t test_samples = 4096;

@@ -19,38 +19,9 @@
 namespace petzval::polynomial_detail {
 namespace {
 
-/// Rays as separate arrays.
-struct Rays {
-  std::array<std::vector<double>, 6> v;
-  std::vector<RayFate> fates;
-
-  explicit Rays(std::size_t count) : fates(count) { v.fill(std::vector<double>(count)); }
-  std::size_t size() const noexcept { return fates.size(); }
-  template <class T>
-  RayArrays<T> arrays() noexcept {
-    return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
-  }
-  Vec3<double> origin(std::size_t i) const noexcept { return {v[0][i], v[1][i], v[2][i]}; }
-  Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
-};
-
-/// Traces lines through the lens. Rays start at the last vertex, so that a distant film or pupil does not lose digits.
+/// Traces lines through the lens.
 Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::size_t wavelength) {
-  const double last_z = lens.surfaces().back().vertex_z;
-  const double fraction = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
-  const double towards = towards_scene(lens, space);
-  Rays rays(lines.size());
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const double dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
-    const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
-    const std::array<double, 6> ray{lines.film_x[i] + fraction * dx,
-                                    lines.film_y[i] + fraction * dy,
-                                    last_z,
-                                    dx * per_length,
-                                    dy * per_length,
-                                    dz * per_length};
-    for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];
-  }
+  Rays rays = rays_along(lens, space, lines);
   petzval::trace(lens, rays.size(), rays.arrays<const double>(), rays.arrays<double>(), rays.fates.data(), nullptr,
                  {.travel = Travel::to_scene, .wavelengths = {wavelength}});
   return rays;
@@ -78,9 +49,7 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
   const double reference_z = polynomial.domain().reference_z;
   const Rays exact = trace(lens, polynomial.domain().space, lines, wavelength);
   Rays rays(lines.size());
-  polynomial.to_scene<double>(lines.size(),
-                              {lines.film_x.data(), lines.film_y.data(), lines.pupil_x.data(), lines.pupil_y.data()},
-                              {}, rays.arrays<double>(), rays.fates.data());
+  polynomial.to_scene<double>(lines.size(), lines.rays(), {}, rays.arrays<double>(), rays.fates.data());
   Errors direction, offset;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
@@ -176,6 +145,25 @@ class Equations {
 };
 
 }  // namespace
+
+Rays rays_along(const Lens& lens, const TwoPlanes& space, const Lines& lines) {
+  const double last_z = lens.surfaces().back().vertex_z;
+  const double fraction = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
+  const double towards = towards_scene(lens, space);
+  Rays rays(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
+    const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
+    const std::array<double, 6> ray{lines.film_x[i] + fraction * dx,
+                                    lines.film_y[i] + fraction * dy,
+                                    last_z,
+                                    dx * per_length,
+                                    dy * per_length,
+                                    dz * per_length};
+    for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];
+  }
+  return rays;
+}
 
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines) {

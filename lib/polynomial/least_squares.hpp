@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +16,36 @@ struct Lines {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 
   std::size_t size() const noexcept { return film_y.size(); }
+  TwoPlaneRays<const double> rays() const noexcept {
+    return {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()};
+  }
 };
+
+/// Lines over film and pupils, from index `first` on: uniform by area or, if `dense`, denser towards the edges of film
+/// and pupil, like Chebyshev nodes. Denser lines reduce the largest errors by some tenths and raise the RMS by one
+/// tenth.
+Lines spread(const FilmPupilTable& pupils, bool mirrors, std::size_t first, std::size_t count, bool dense,
+             std::size_t wavelength);
+/// Sets the smallest disc that contains some lines or, with mirror symmetry, an ellipse around the smallest rectangle.
+void enclose(const std::vector<Lines>& lines, bool mirrors, RayPolynomial::Domain& domain);
+
+/// Rays as separate arrays.
+struct Rays {
+  std::array<std::vector<double>, 6> v;
+  std::vector<RayFate> fates;
+
+  explicit Rays(std::size_t count) : fates(count) { v.fill(std::vector<double>(count)); }
+  std::size_t size() const noexcept { return fates.size(); }
+  template <class T>
+  RayArrays<T> arrays() noexcept {
+    return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
+  }
+  Vec3<double> origin(std::size_t i) const noexcept { return {v[0][i], v[1][i], v[2][i]}; }
+  Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
+};
+/// Rays along lines towards the scene. They start at the last vertex, so that a distant film or pupil does not lose
+/// digits.
+Rays rays_along(const Lens& lens, const TwoPlanes& space, const Lines& lines);
 
 struct FitLines {
   Lines fitted;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops from lines to rays towards the scene; to_scene.cpp defines them for each instruction set.
+// Loops from lines to rays towards the scene or to transmittances; to_scene.cpp defines them for each instruction set.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct Modes {
 };
 
 template <class R>
-struct ToSceneJob {
+struct Job {
   const R* coefficients;  ///< film and pupil coefficients of direction, then of offset; by wavelength if rays have
                           ///< positions
   const R* rows;          ///< one row for each coefficient, by wavelength
@@ -56,21 +56,24 @@ struct ToSceneJob {
   std::size_t count;
   const R* lines[4];  ///< film x, y, pupil x, y
   RayWavelengths wavelengths;
-  R* rays[6];  ///< origin, direction
-  RayFate* fates;
+  R* out[6];       ///< origin and direction of rays, or transmittances
+  RayFate* fates;  ///< of rays
 };
 
-template <class R>
-using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
+template <class R, std::size_t symmetries>
+using Loops = std::array<void (*)(const Job<R>&) noexcept, symmetries>;
+/// Transmittances have degree 2 to 8 for lenses of revolution and degree 2 or 4 with mirror symmetry.
+inline constexpr std::size_t revolution_transmittances = 4, transmittance_count = 6;
 
 /// Maps one line.
 using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
                                           Ray<double>&) noexcept,
                               2 * degree_count>;
 
-/// Tables indexed by Data::loop().
+/// Tables indexed by Data::loop(), and by transmittance (by_transmittance() in sums.hpp).
 struct PolynomialLoops {
-  std::tuple<ToSceneLoops<float>, ToSceneLoops<double>> batches;
+  std::tuple<Loops<float, 2 * degree_count>, Loops<double, 2 * degree_count>> to_scene;
+  std::tuple<Loops<float, transmittance_count>, Loops<double, transmittance_count>> transmittances;
   OneToScene one;
 };
 

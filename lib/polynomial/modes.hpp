@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "loops.hpp"
-#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::polynomial_detail {
 
@@ -17,10 +16,11 @@ struct FitModes {
 
 /// Finds modes by singular value decomposition.
 ///
-/// It takes as many modes as are needed to reduce the norm of the residual coefficients of every fit to a twentieth of
-/// the error of the fit plus 5e-8 rad, which is below the rounding of float; at most most_modes. The fits of a lens
-/// change with the dispersion of its glasses: for any number of fits, four or five modes suffice.
-/// @param coefficients for each fit; the first half is for directions, the second half for offsets
-FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients);
+/// It takes as many modes as are needed to reduce the norm of the residual coefficients of every fit to the tolerances;
+/// at most most_modes. The fits of a lens change with the dispersion of its glasses: for any number of fits, four or
+/// five modes suffice.
+/// @param coefficients for each fit
+/// @param tolerances of the first and of the second half of the coefficients
+FitModes find_modes(const std::vector<std::vector<double>>& coefficients, const std::array<double, 2>& tolerances);
 
 }  // namespace petzval::polynomial_detail

@@ -90,31 +90,7 @@ std::size_t nearest_to_d(const std::vector<RayPolynomial::Fit>& fits) {
   return static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(), closer) - fits.begin());
 }
 
-template <class R, class In>
-void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<std::vector<double>>& fits,
-              const std::vector<std::vector<double>>& modes) {
-  const auto scales = [](const RayPolynomial::Domain::Section& section) {
-    return typename polynomial_detail::Scales<R>::Section{static_cast<R>(section.pupil_shift),
-                                                          static_cast<R>(1 / section.pupil_radius)};
-  };
-  const auto [along_x, along_y] = polynomial_detail::sections(domain);
-  in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.reference_z), scales(along_x),
-               scales(along_y)};
-  in.empty_domain = in.scales;
-  in.empty_domain.per_film_radius = std::numeric_limits<R>::quiet_NaN();
-  const auto append = [](std::vector<R>& to, const std::vector<double>& from) {
-    std::transform(from.begin(), from.end(), std::back_inserter(to),
-                   [](double value) { return static_cast<R>(value); });
-  };
-  for (const auto& mode : modes) append(in.modes, mode);
-  in.rows = {fits[0].size(), fits.size()};
-  for (std::size_t w = 0; w < fits.size(); ++w) {
-    append(in.coefficients, fits[w]);
-    for (std::size_t i = 0; i < fits[w].size(); ++i) in.rows.set(i, w, fits[w][i]);
-  }
-}
-
-/// Coefficients of a fit in the order of ToSceneJob.
+/// Coefficients of a fit in the order of Job.
 std::vector<double> all_coefficients(const RayPolynomial::Fit& fit) {
   std::vector<double> result;
   for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
@@ -134,15 +110,54 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
     throw Error("polynomial: primary_wavelength = " + std::to_string(primary) + "; must be below " +
                 std::to_string(fits.size()));
   }
-  wavelengths = lens_detail::CompiledWavelengths(wavelengths_of(fits));
   std::vector<std::vector<double>> coefficients;
   std::transform(fits.begin(), fits.end(), std::back_inserter(coefficients), all_coefficients);
-  const auto found = polynomial_detail::find_modes(fits, coefficients);
-  modes = found.modes.size();
-  mode_weights = {wavelengths, found.weights};
-  round_to<float>(std::get<In<float>>(in), domain, coefficients, found.modes);
-  round_to<double>(std::get<In<double>>(in), domain, coefficients, found.modes);
+  // Between fits, errors grow by a twentieth and by less than the rounding of float.
+  constexpr double relative_tolerance = 0.05, least_rad = 5e-8;
+  double most_rad = 0, most_mm = 0, largest_offset = 0;
+  for (const Fit& fit : fits) {
+    most_rad = std::max(most_rad, fit.rms_rad), most_mm = std::max(most_mm, fit.rms_mm);
+    for (const auto* offsets : {&fit.offset_by_film, &fit.offset_by_pupil}) {
+      for (const double offset : *offsets) largest_offset = std::max(largest_offset, std::abs(offset));
+    }
+  }
+  by_wavelength = {
+      domain,
+      wavelengths_of(fits),
+      primary,
+      coefficients,
+      {relative_tolerance * most_rad + least_rad, relative_tolerance * most_mm + least_rad * largest_offset + 1e-300}};
 }
+
+namespace polynomial_detail {
+
+WavelengthFits::WavelengthFits(const RayPolynomial::Domain& domain, std::span<const double> wavelengths_nm,
+                               std::size_t primary, const std::vector<std::vector<double>>& coefficients,
+                               const std::array<double, 2>& tolerances)
+    : count_(coefficients.size()), primary_(primary), wavelengths_(wavelengths_nm) {
+  const auto [modes, weights] = find_modes(coefficients, tolerances);
+  modes_ = modes.size();
+  mode_weights_ = {wavelengths_, weights};
+  const auto round_to = [&]<class R>(In<R>& in) {
+    in.scales = scales_of<R>(domain);
+    in.empty_domain = in.scales;
+    in.empty_domain.per_film_radius = std::numeric_limits<R>::quiet_NaN();
+    const auto append = [](std::vector<R>& to, const std::vector<double>& from) {
+      std::transform(from.begin(), from.end(), std::back_inserter(to),
+                     [](double value) { return static_cast<R>(value); });
+    };
+    for (const auto& mode : modes) append(in.modes, mode);
+    in.rows = {coefficients[0].size(), count_};
+    for (std::size_t w = 0; w < count_; ++w) {
+      append(in.coefficients, coefficients[w]);
+      for (std::size_t i = 0; i < coefficients[w].size(); ++i) in.rows.set(i, w, coefficients[w][i]);
+    }
+  };
+  round_to(std::get<In<float>>(in_));
+  round_to(std::get<In<double>>(in_));
+}
+
+}  // namespace polynomial_detail
 
 void polynomial_detail::check_degree(const std::string& where, int degree) {
   if (degree >= 3 && degree <= 11 && degree % 2 == 1) return;
@@ -189,30 +204,18 @@ std::size_t RayPolynomial::primary_wavelength() const noexcept { return data_->p
 template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const Data& data = *data_;
-  const auto& in = std::get<Data::In<T>>(data.in);
-  const auto to_scene =
-      std::get<polynomial_detail::ToSceneLoops<T>>(polynomial_detail::polynomial_loops().batches)[data.loop()];
-  Data::CoefficientBuffer<T> buffer;
-  const auto [coefficients, scales] = data.fitted<T>(wavelengths.shared() ? wavelengths.all : Wavelength(0), buffer);
-  to_scene({coefficients,
-            in.rows.data(),
-            in.rows.length(),
-            data.fits.size(),
-            {in.modes.data(), data.modes, data.mode_weights.rows<T>()},
-            scales,
-            count,
-            {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y},
-            wavelengths,
-            {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz},
-            fates});
+  polynomial_detail::WavelengthFits::Buffer<T> between;
+  auto job = data_->by_wavelength.job<T>(count, lines, wavelengths, between);
+  std::ranges::copy(std::array{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, job.out);
+  job.fates = fates;
+  using Loops = polynomial_detail::Loops<T, 2 * polynomial_detail::degree_count>;
+  std::get<Loops>(polynomial_detail::polynomial_loops().to_scene)[data_->loop()](job);
 }
 
 RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
-  const Data& data = *data_;
-  Data::CoefficientBuffer<double> buffer;
-  const auto [coefficients, scales] = data.fitted<double>(wavelength, buffer);
-  return polynomial_detail::polynomial_loops().one[data.loop()](coefficients, scales, line, ray);
+  polynomial_detail::WavelengthFits::Buffer<double> between;
+  const auto [coefficients, scales] = data_->by_wavelength.fitted<double>(wavelength, between);
+  return polynomial_detail::polynomial_loops().one[data_->loop()](coefficients, scales, line, ray);
 }
 
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// s and o of a line (chart.hpp) as sums of terms, for each symmetry of a lens; n = (degree - 1) / 2 is the number of
-// factors of a term. In an unnamed namespace, for objects of several instruction sets (lib/README.md).
+// s and o of a line (chart.hpp) and its transmittance as sums of terms, for each symmetry of a lens; n = (degree - 1) /
+// 2 is the number of factors of a term. In an unnamed namespace, for objects of several instruction sets
+// (lib/README.md).
 #pragma once
 
 #include <array>
@@ -53,7 +54,8 @@ PETZVAL_INLINE LocalRay<V> out_of_chart(const Four<V>& line) noexcept {
 /// s = A f + B p and o = C f + D p, with A to D polynomials of f.f, f.p and p.p.
 template <int n>
 struct OfRevolution {
-  static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
+  static constexpr int terms = term_count(n, 3), coefficients = 4 * terms, invariant_terms = terms;
+  static constexpr std::size_t sum_count = 4, outputs = 6;
 
   template <class V>
   struct Variables {
@@ -72,6 +74,11 @@ struct OfRevolution {
     return {horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), horner<n>(c + 2 * terms, w, v, u),
             horner<n>(c + 3 * terms, w, v, u)};
   }
+  /// A polynomial that does not change if the line rotates about the axis.
+  template <class C, class V>
+  static PETZVAL_INLINE V invariant(const C& c, const Variables<V>& at) noexcept {
+    return horner<n>(c, at.w, at.v, at.u);
+  }
 
   template <class V>
   static PETZVAL_INLINE Four<V> line(const Four<V>& sums, const Four<V>& at) noexcept {
@@ -88,6 +95,8 @@ struct OfRevolution {
 template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
+  static constexpr int invariant_terms = terms + term_count(n - 1, 4) + term_count(n - 2, 4);
+  static constexpr std::size_t sum_count = 4, outputs = 6;
 
   template <class V>
   using Variables = Four<V>;
@@ -106,50 +115,87 @@ struct OfMirrors {
     return {sum_of_products(fx, x(c), px, x(c + 2 * terms)), sum_of_products(fy, y(c + terms), py, y(c + 3 * terms)),
             sum_of_products(fx, x(o), px, x(o + 2 * terms)), sum_of_products(fy, y(o + terms), py, y(o + 3 * terms))};
   }
+  /// A polynomial that does not change in a mirror: even in (fx, px) and even in (fy, py).
+  template <class C, class V>
+  static PETZVAL_INLINE V invariant(const C& c, const Four<V>& at) noexcept {
+    const auto& [fx, fy, px, py] = at;
+    const V fx2 = fx * fx, fy2 = fy * fy, px2 = px * px, py2 = py * py, across_x = fx * px, across_y = fy * py;
+    return across_x * OfMirrors<n - 1>::even_sum(c + terms, across_y, py2, fy2, px2, fx2) +
+           even_sum(c, across_y, py2, fy2, px2, fx2);
+  }
 
   template <class V>
   static PETZVAL_INLINE Four<V> line(const Four<V>& sums, const Four<V>&) noexcept {
     return sums;
   }
 
- private:
   /// @param across product of film and pupil coordinates along the other axis
   template <class C, class V>
   static PETZVAL_INLINE V even_sum(const C& c, const V& across, const V& other_pupil2, const V& other_film2,
                                    const V& pupil2, const V& film2) noexcept {
-    return across * horner<n - 1>(c + even, other_pupil2, other_film2, pupil2, film2) +
-           horner<n>(c, other_pupil2, other_film2, pupil2, film2);
+    const V sum = horner<n>(c, other_pupil2, other_film2, pupil2, film2);
+    if constexpr (n == 0) {
+      return sum;
+    } else {
+      return across * horner<n - 1>(c + even, other_pupil2, other_film2, pupil2, film2) + sum;
+    }
   }
 };
 
-/// A ray, and the mask of lanes in the domain of a fit.
-template <class V>
-struct MappedRay {
+/// A transmittance with the symmetry of a lens.
+template <class Symmetry>
+struct Transmittance {
+  static constexpr int coefficients = Symmetry::invariant_terms;
+  static constexpr std::size_t sum_count = 1, outputs = 1;
+
+  template <class V>
+  using Variables = typename Symmetry::template Variables<V>;
+  template <class V>
+  static PETZVAL_INLINE Variables<V> variables(const Four<V>& at) noexcept {
+    return Symmetry::variables(at);
+  }
+  template <class C, class V>
+  static PETZVAL_INLINE std::array<V, 1> sums(const C& c, const Variables<V>& at) noexcept {
+    return {Symmetry::invariant(c, at)};
+  }
+};
+
+/// A ray or a transmittance, and the mask of lanes in the domain of a fit.
+template <class V, std::size_t outputs = 6>
+struct Mapped {
   kernel::Mask<V> inside;
-  LocalRay<V> ray;
+  std::array<V, outputs> out;
 };
 
 /// Maps a line (mm) to a ray (lens frame); to the reference point along the axis if the line is not inside. There is no
-/// branch after the sums: compilers fuse a product with a sum only within a block of code.
+/// branch after the sums: compilers fuse a product with a sum only within a block of code. The
+/// transmittance of a line outside the domain is the value at the edge.
 /// @param sums sums of terms, called with the variables of Symmetry and the mask `inside`, from which it removes lanes
 ///   without a fit
 template <class Symmetry, class V, class Sums>
-PETZVAL_INLINE MappedRay<V> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
-                                const Sums& sums) noexcept {
-  const Four<V> at = in_domain(scales, line);
+PETZVAL_INLINE Mapped<V, Symmetry::outputs> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
+                                                const Sums& sums) noexcept {
+  using R = kernel::Storage<V>;
+  Four<V> at = in_domain(scales, line);
   kernel::Mask<V> inside = within(at, within_domain);
-  const V axis(kernel::Storage<V>(0));
-  Four<V> chart = Symmetry::line(sums(Symmetry::variables(at), inside), at);
-  for (V& component : chart) component = select(inside, component, axis);
-  LocalRay<V> ray = out_of_chart(chart);
-  ray[2] = ray[2] + scales.reference_z;
-  return {inside, ray};
+  if constexpr (Symmetry::outputs == 1) {
+    const V least(R(-1)), most(R(1));
+    for (V& x : at) x = select(x > least, x, least), x = select(x < most, x, most);
+    return {inside, sums(Symmetry::variables(at), inside)};
+  } else {
+    const V axis(R(0));
+    Four<V> chart = Symmetry::line(sums(Symmetry::variables(at), inside), at);
+    for (V& component : chart) component = select(inside, component, axis);
+    LocalRay<V> ray = out_of_chart(chart);
+    ray[2] = ray[2] + scales.reference_z;
+    return {inside, ray};
+  }
 }
 
 /// Maps a line by a fit.
 template <class Symmetry, class V>
-PETZVAL_INLINE MappedRay<V> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
-                                const kernel::Storage<V>* coefficients) noexcept {
+PETZVAL_INLINE Mapped<V, Symmetry::outputs> map(const Scales<kernel::Storage<V>>& scales, const Four<V>& line,
+                                                const kernel::Storage<V>* coefficients) noexcept {
   return map<Symmetry>(scales, line,
                        [&](const auto& variables, auto&) { return Symmetry::sums(coefficients, variables); });
 }
@@ -160,6 +206,14 @@ constexpr auto by_symmetry_and_degree(Of of) {
   return std::array{of(OfRevolution<1>{}), of(OfRevolution<2>{}), of(OfRevolution<3>{}), of(OfRevolution<4>{}),
                     of(OfRevolution<5>{}), of(OfMirrors<1>{}),    of(OfMirrors<2>{}),    of(OfMirrors<3>{}),
                     of(OfMirrors<4>{}),    of(OfMirrors<5>{})};
+}
+
+/// Calls a function with the transmittances: of revolution by rising degree, then with mirror symmetry.
+template <class Of>
+constexpr auto by_transmittance(Of of) {
+  return std::array{of(Transmittance<OfRevolution<1>>{}), of(Transmittance<OfRevolution<2>>{}),
+                    of(Transmittance<OfRevolution<3>>{}), of(Transmittance<OfRevolution<4>>{}),
+                    of(Transmittance<OfMirrors<1>>{}),    of(Transmittance<OfMirrors<2>>{})};
 }
 
 }  // namespace

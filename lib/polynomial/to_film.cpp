@@ -80,8 +80,8 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   const Domain& domain = data_->domain;
   const auto [along_x, along_y] = polynomial_detail::sections(domain);
   const bool shared = wavelengths.shared();
-  Data::CoefficientBuffer<double> buffer;
-  const double* coefficients = shared ? data_->coefficients(wavelengths.all, buffer) : nullptr;
+  polynomial_detail::WavelengthFits::Buffer<double> buffer;
+  const double* coefficients = shared ? data_->by_wavelength.coefficients(wavelengths.all, buffer) : nullptr;
   std::array<std::array<double, inverse_block>, 4> target, at;
   std::array<double, inverse_block> found;
   for (std::size_t begin = 0; begin < count; begin += inverse_block) {
@@ -108,7 +108,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
       if (lit) {
         x = {at[0][i], at[1][i], at[2][i], at[3][i]};
       } else if (sound[i] && found[i] == 0) {
-        const double* const c = shared ? coefficients : data_->coefficients(wavelengths.at(o), buffer);
+        const double* const c = shared ? coefficients : data_->by_wavelength.coefficients(wavelengths.at(o), buffer);
         lit = c && solve(c, {target[0][i], target[1][i], target[2][i], target[3][i]}, x);
       }
       if (!lit) x = {};

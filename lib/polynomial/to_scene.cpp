@@ -19,6 +19,8 @@ using core_detail::Native;
 
 template <class Symmetry, class R>
 using Variables = typename Symmetry::template Variables<Lanes<R>>;
+template <class Symmetry, class R>
+using Sums = std::array<Lanes<R>, Symmetry::sum_count>;
 template <class R>
 using Bits = typename Native<R>::Bits;
 
@@ -27,9 +29,9 @@ static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 /// Adds the sums of a fit or a mode, multiplied by a weight for each lane.
 template <class Symmetry, class R>
 PETZVAL_INLINE void add_sums(const R* coefficients, Lanes<R> weight, const Variables<Symmetry, R>& variables,
-                             Four<Lanes<R>>& sums) noexcept {
-  const Four<Lanes<R>> added = Symmetry::sums(coefficients, variables);
-  for (std::size_t k = 0; k < 4; ++k) sums[k] = sums[k] + weight * added[k];
+                             Sums<Symmetry, R>& sums) noexcept {
+  const Sums<Symmetry, R> added = Symmetry::sums(coefficients, variables);
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = sums[k] + weight * added[k];
 }
 
 /// Coefficients of each lane's own wavelength, read like a pointer to the coefficients of one wavelength. Rows always
@@ -54,10 +56,10 @@ struct WavelengthsByPosition {
   using V = Lanes<R>;
   using HalfPositions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 4)));
   using Positions = std::conditional_t<sizeof(R) == 4, lens_detail::Positions, HalfPositions>;
-  const ToSceneJob<R>& job;
+  const Job<R>& job;
 
-  PETZVAL_INLINE Four<V> sums(std::size_t o, const Variables<Symmetry, R>& variables,
-                              core_detail::Mask<R>& inside) noexcept {
+  PETZVAL_INLINE Sums<Symmetry, R> sums(std::size_t o, const Variables<Symmetry, R>& variables,
+                                        core_detail::Mask<R>& inside) noexcept {
     const std::uint16_t* const each = job.wavelengths.each + o;
     // Converted in one operation: stores of single elements would stall the load that follows.
     Positions positions;
@@ -71,7 +73,7 @@ struct WavelengthsByPosition {
       }
     }
     // All lanes are evaluated at each wavelength that occurs.
-    Four<V> result{};
+    Sums<Symmetry, R> result{};
     for (int l = 0; l < V::width; ++l) {
       bool is_new = each[l] < job.fits;
       for (int k = 0; k < l; ++k) is_new &= each[k] != each[l];
@@ -88,11 +90,11 @@ struct WavelengthsByPosition {
 template <class Symmetry, class R>
 struct WavelengthsInNm {
   using V = Lanes<R>;
-  const ToSceneJob<R>& job;
+  const Job<R>& job;
   R weights[most_modes][lens_detail::look_up_block];  ///< of modes, for a block of rays
 
-  PETZVAL_INLINE Four<V> sums(std::size_t o, const Variables<Symmetry, R>& variables,
-                              core_detail::Mask<R>& inside) noexcept {
+  PETZVAL_INLINE Sums<Symmetry, R> sums(std::size_t o, const Variables<Symmetry, R>& variables,
+                                        core_detail::Mask<R>& inside) noexcept {
     const std::size_t in_block = o % lens_detail::look_up_block, left = job.count - o;
     if (in_block == 0) {
       lens_detail::look_up(job.modes.weights, job.wavelengths, o,
@@ -100,7 +102,7 @@ struct WavelengthsInNm {
                            job.modes.count);
     }
     inside = all_of(inside, core_detail::load(weights[0] + in_block) > V(R(0)));
-    Four<V> result{};
+    Sums<Symmetry, R> result{};
     for (std::size_t k = 0; k < job.modes.count; ++k) {
       add_sums<Symmetry>(job.modes.coefficients + Symmetry::coefficients * k, core_detail::load(weights[k] + in_block),
                          variables, result);
@@ -112,12 +114,12 @@ struct WavelengthsInNm {
 /// Maps a number of rays that fills all lanes. Not inlined: all rays then run through the same code.
 /// @param by the coefficients of all rays, or one of the types above
 template <class Symmetry, class R, class By>
-__attribute__((noinline)) void map_lanes(const ToSceneJob<R>& job, By& by) noexcept {
+__attribute__((noinline)) void map_lanes(const Job<R>& job, By& by) noexcept {
   using V = Lanes<R>;
   for (std::size_t o = 0; o < job.count; o += V::width) {
     const auto from = [&](int k) { return core_detail::load(job.lines[k] + o); };
     const Four<V> line{from(0), from(1), from(2), from(3)};
-    const auto [inside, ray] = [&] {
+    const auto [inside, out] = [&] {
       if constexpr (std::is_pointer_v<By>) {
         return map<Symmetry>(job.scales, line, by);
       } else {
@@ -126,7 +128,8 @@ __attribute__((noinline)) void map_lanes(const ToSceneJob<R>& job, By& by) noexc
         });
       }
     }();
-    for (std::size_t k = 0; k < 6; ++k) core_detail::store(job.rays[k] + o, ray[k]);
+    for (std::size_t k = 0; k < out.size(); ++k) core_detail::store(job.out[k] + o, out[k]);
+    if constexpr (Symmetry::outputs == 1) continue;
     static_assert(sizeof(RayFate) == 1 && static_cast<int>(RayFate::transmitted) == 0);
     Bits<R> fates = Bits<R>{} + static_cast<typename Native<R>::Bit>(RayFate::outside_fit);
     core_detail::keep(fates, inside, Bits<R>{});
@@ -136,7 +139,7 @@ __attribute__((noinline)) void map_lanes(const ToSceneJob<R>& job, By& by) noexc
 }
 
 template <class Symmetry, class R>
-void map_whole(const ToSceneJob<R>& job) noexcept {
+void map_whole(const Job<R>& job) noexcept {
   if (job.wavelengths.each_nm) {
     WavelengthsInNm<Symmetry, R> by{job, {}};
     map_lanes<Symmetry>(job, by);
@@ -150,14 +153,14 @@ void map_whole(const ToSceneJob<R>& job) noexcept {
 
 /// Fills unused lanes with copies of the first remaining ray.
 template <class Symmetry, class R>
-void to_scene(const ToSceneJob<R>& job) noexcept {
+void map_all(const Job<R>& job) noexcept {
   constexpr std::size_t lanes = Lanes<R>::width;
-  ToSceneJob<R> part = job;
+  Job<R> part = job;
   const std::size_t rest = job.count % lanes, o = job.count - rest;
   part.count = o;
   map_whole<Symmetry>(part);
   if (rest == 0) return;
-  R in[4][lanes], out[6][lanes];
+  R in[4][lanes], out[Symmetry::outputs][lanes];
   std::uint16_t each[lanes];
   float each_nm[lanes];
   RayFate fates[lanes];
@@ -167,14 +170,14 @@ void to_scene(const ToSceneJob<R>& job) noexcept {
     from = to;
   };
   for (std::size_t k = 0; k < 4; ++k) fill(part.lines[k], in[k]);
-  for (std::size_t k = 0; k < 6; ++k) part.rays[k] = out[k];
+  for (std::size_t k = 0; k < Symmetry::outputs; ++k) part.out[k] = out[k];
   fill(part.wavelengths.each, each), fill(part.wavelengths.each_nm, each_nm);
   part.count = lanes;
   part.fates = fates;
   map_whole<Symmetry>(part);
   for (std::size_t l = 0; l < rest; ++l) {
-    for (std::size_t k = 0; k < 6; ++k) job.rays[k][o + l] = out[k][l];
-    job.fates[o + l] = fates[l];
+    for (std::size_t k = 0; k < Symmetry::outputs; ++k) job.out[k][o + l] = out[k][l];
+    if constexpr (Symmetry::outputs > 1) job.fates[o + l] = fates[l];
   }
 }
 
@@ -189,16 +192,15 @@ RayFate one_to_scene(const double* coefficients, const Scales<double>& scales, c
   return inside ? RayFate::transmitted : RayFate::outside_fit;
 }
 
-constexpr OneToScene one = by_symmetry_and_degree([]<class Symmetry>(Symmetry) { return one_to_scene<Symmetry>; });
-
 template <class R>
-constexpr ToSceneLoops<R> loops = by_symmetry_and_degree([]<class Symmetry>(Symmetry) {
-  return to_scene<Symmetry, R>;
-});
+constexpr auto map_each = []<class Symmetry>(Symmetry) { return map_all<Symmetry, R>; };
 
 }  // namespace
 
 extern const PolynomialLoops PETZVAL_LOOPS;
-const PolynomialLoops PETZVAL_LOOPS{{loops<float>, loops<double>}, one};
+const PolynomialLoops PETZVAL_LOOPS{
+    {by_symmetry_and_degree(map_each<float>), by_symmetry_and_degree(map_each<double>)},
+    {by_transmittance(map_each<float>), by_transmittance(map_each<double>)},
+    by_symmetry_and_degree([]<class Symmetry>(Symmetry) { return one_to_scene<Symmetry>; })};
 
 }  // namespace petzval::polynomial_detail
