@@ -107,10 +107,9 @@ struct RayPolynomial::Data {
   int degree;
   Domain domain;
   std::vector<Fit> fits;
-  std::size_t primary;  ///< position of the primary wavelength
   polynomial_detail::WavelengthFits by_wavelength;
 
-  Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
+  Data(int degree, const Domain& domain, std::vector<Fit> fits, std::size_t primary);
 
   /// Index of symmetry and degree in the tables of loops.
   std::size_t loop() const noexcept {

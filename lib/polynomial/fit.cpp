@@ -224,7 +224,8 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   domain.reference_z = reference_of(lens);
   polynomial_detail::enclose(all_rims, mirrors, domain);
   // Lenses with two sections need more lines: 12 equations per coefficient.
-  const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
+  const std::size_t fitted =
+      mirrors ? std::max<std::size_t>(3072, 24 * polynomial_detail::mirror_terms(degree).size()) : 1536;
   constexpr std::size_t test_samples = 4096;
   const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),
                 fresh = spread(none, fitted, test_samples, false), at_edges = edges(none, mirrors ? 9 : 1);

@@ -91,10 +91,12 @@ class Equations {
   };
 
   Equations(int degree, const RayPolynomial::Domain& domain) : domain_(domain) {
-    if (domain.along_x) {
-      mirror_terms_ = RayPolynomial::mirror_terms(degree);
-    } else {
-      terms_ = RayPolynomial::terms(degree);
+    const int n = (degree - 1) / 2;
+    if (domain.along_x) mirror_terms_ = mirror_terms(degree);
+    for (int w = 0; w <= n && !domain.along_x; ++w) {
+      for (int v = 0; v <= n - w; ++v) {
+        for (int u = 0; u <= n - w - v; ++u) terms_.push_back({u, v, w});
+      }
     }
     for (Row& row : rows_) row.left.resize(2 * count());
   }
@@ -139,12 +141,27 @@ class Equations {
 
  private:
   const RayPolynomial::Domain& domain_;
-  std::vector<RayPolynomial::Term> terms_;
-  std::vector<RayPolynomial::MirrorTerm> mirror_terms_;
+  std::vector<std::array<int, 3>> terms_;  // exponents of u, v and w, in the order of coefficients
+  std::vector<std::array<int, 4>> mirror_terms_;
   std::array<Row, 2> rows_;
 };
 
 }  // namespace
+
+std::vector<std::array<int, 4>> mirror_terms(int degree) {
+  std::vector<std::array<int, 4>> result;
+  for (const int odd : {0, 1}) {
+    const int n = (degree - 1) / 2 - odd;
+    for (int l = 0; l <= n; ++l) {
+      for (int k = 0; k <= n - l; ++k) {
+        for (int j = 0; j <= n - l - k; ++j) {
+          for (int i = 0; i <= n - l - k - j; ++i) result.push_back({2 * i, 2 * j, 2 * k + odd, 2 * l + odd});
+        }
+      }
+    }
+  }
+  return result;
+}
 
 Rays rays_along(const Lens& lens, const TwoPlanes& space, const Lines& lines) {
   const double last_z = lens.surfaces().back().vertex_z;

@@ -29,6 +29,10 @@ Lines spread(const FilmPupilTable& pupils, bool mirrors, std::size_t first, std:
 /// Sets the smallest disc that contains some lines or, with mirror symmetry, an ellipse around the smallest rectangle.
 void enclose(const std::vector<Lines>& lines, bool mirrors, RayPolynomial::Domain& domain);
 
+/// Exponents of film and pupil point along the component's own axis and along the other axis, for mirror symmetry, in
+/// the order of coefficients.
+std::vector<std::array<int, 4>> mirror_terms(int degree);
+
 /// Rays as separate arrays.
 struct Rays {
   std::array<std::vector<double>, 6> v;

@@ -14,8 +14,6 @@
 #include "data.hpp"
 #include "modes.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/geometry.hpp"
-#include "pupil_table/repeated_wavelength.hpp"
 
 namespace petzval {
 namespace {
@@ -23,71 +21,10 @@ namespace {
 /// Products of larger values overflow in float; no lens comes near this limit.
 constexpr double max_value = 1e12;
 
-void check(const std::string& what, double value, double from, double to) {
-  if (value >= from && value <= to) return;
-  throw Error(what + " = " + to_text(value) + "; must be a number from " + to_text(from) + " to " + to_text(to));
-}
-
 std::vector<double> wavelengths_of(const std::vector<RayPolynomial::Fit>& fits) {
   std::vector<double> nm;
   for (const RayPolynomial::Fit& fit : fits) nm.push_back(fit.wavelength_nm);
   return nm;
-}
-
-void check(int degree, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
-  const std::string where = "polynomial: ";
-  polynomial_detail::check_degree(where, degree);
-  check(where + "film_z", domain.space.film_z, -max_value, max_value);
-  check(where + "pupil_z", domain.space.pupil_z, -max_value, max_value);
-  if (domain.space.depth() == 0) {
-    throw Error(where + "pupil_z = " + to_text(domain.space.film_z) + " mm; must differ from film_z");
-  }
-  check(where + "film_radius", domain.film_radius, 1 / max_value, max_value);
-  check(where + "pupil_shift", domain.pupil_shift, -max_value, max_value);
-  check(where + "pupil_radius", domain.pupil_radius, 1 / max_value, max_value);
-  if (domain.along_x) {
-    check(where + "pupil_shift along x", domain.along_x->pupil_shift, -max_value, max_value);
-    check(where + "pupil_radius along x", domain.along_x->pupil_radius, 1 / max_value, max_value);
-  }
-  check(where + "reference_z", domain.reference_z, -max_value, max_value);
-  if (fits.empty()) throw Error(where + "there are no fits; must have a fit for each wavelength");
-  const std::size_t terms = domain.along_x ? 2 * RayPolynomial::mirror_terms(degree).size()  // along x and y
-                                           : RayPolynomial::terms(degree).size();
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const RayPolynomial::Fit& fit = fits[i];
-    const std::string here = where + "fit " + std::to_string(i) + ": ";
-    const auto check_all = [&](const char* name, const std::vector<double>& coefficients) {
-      if (coefficients.size() != terms) {
-        throw Error(here + name + " has " + std::to_string(coefficients.size()) + " numbers; must have " +
-                    std::to_string(terms) + " for degree " + std::to_string(degree) +
-                    (domain.along_x ? " and mirror symmetry" : ""));
-      }
-      for (std::size_t k = 0; k < terms; ++k) {
-        check(here + name + ": number " + std::to_string(k), coefficients[k], -max_value, max_value);
-      }
-    };
-    check(here + "wavelength_nm", fit.wavelength_nm, 1 / max_value, max_value);
-    check_all("direction_by_film", fit.direction_by_film);
-    check_all("direction_by_pupil", fit.direction_by_pupil);
-    check_all("offset_by_film", fit.offset_by_film);
-    check_all("offset_by_pupil", fit.offset_by_pupil);
-    check(here + "rms_rad", fit.rms_rad, 0, max_value);
-    check(here + "max_rad", fit.max_rad, 0, max_value);
-    check(here + "rms_mm", fit.rms_mm, 0, max_value);
-    check(here + "max_mm", fit.max_mm, 0, max_value);
-  }
-  const std::vector<double> nm = wavelengths_of(fits);
-  if (const auto repeated = pupil_table_detail::repeated_wavelength(nm)) {
-    throw Error(where + "fit " + std::to_string(*repeated) + ": wavelength_nm = " + to_text(nm[*repeated]) +
-                "; must differ from all other fits");
-  }
-}
-
-std::size_t nearest_to_d(const std::vector<RayPolynomial::Fit>& fits) {
-  const auto closer = [](const RayPolynomial::Fit& a, const RayPolynomial::Fit& b) {
-    return std::abs(a.wavelength_nm - d_line_nm) < std::abs(b.wavelength_nm - d_line_nm);
-  };
-  return static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(), closer) - fits.begin());
 }
 
 /// Coefficients of a fit in the order of Job.
@@ -96,20 +33,19 @@ std::vector<double> all_coefficients(const RayPolynomial::Fit& fit) {
   for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
     result.insert(result.end(), c->begin(), c->end());
   }
+  for (const double value : result) {
+    if (std::abs(value) <= max_value) continue;
+    throw Error("polynomial: fit at " + to_text(fit.wavelength_nm) + " nm: coefficient = " + to_text(value) +
+                "; must be a number from " + to_text(-max_value) + " to " + to_text(max_value));
+  }
   return result;
 }
 
 }  // namespace
 
-RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fit> all,
-                          std::optional<std::size_t> of_primary)
+RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fit> all, std::size_t primary)
     : degree(of_degree), domain(of_domain), fits(std::move(all)) {
-  check(degree, domain, fits);
-  primary = of_primary.value_or(nearest_to_d(fits));
-  if (primary >= fits.size()) {
-    throw Error("polynomial: primary_wavelength = " + std::to_string(primary) + "; must be below " +
-                std::to_string(fits.size()));
-  }
+  polynomial_detail::check_degree("polynomial: ", degree);
   std::vector<std::vector<double>> coefficients;
   std::transform(fits.begin(), fits.end(), std::back_inserter(coefficients), all_coefficients);
   // Between fits, errors grow by a twentieth and by less than the rounding of float.
@@ -164,42 +100,12 @@ void polynomial_detail::check_degree(const std::string& where, int degree) {
   throw Error(where + "degree = " + std::to_string(degree) + "; must be 3, 5, 7, 9 or 11");
 }
 
-std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
-  polynomial_detail::check_degree("polynomial: ", degree);
-  const int n = (degree - 1) / 2;
-  std::vector<Term> result;
-  for (int w = 0; w <= n; ++w) {
-    for (int v = 0; v <= n - w; ++v) {
-      for (int u = 0; u <= n - w - v; ++u) result.push_back({u, v, w});
-    }
-  }
-  return result;
-}
-
-std::vector<RayPolynomial::MirrorTerm> RayPolynomial::mirror_terms(int degree) {
-  polynomial_detail::check_degree("polynomial: ", degree);
-  std::vector<MirrorTerm> result;
-  for (const int odd : {0, 1}) {
-    const int n = (degree - 1) / 2 - odd;
-    for (int l = 0; l <= n; ++l) {
-      for (int k = 0; k <= n - l; ++k) {
-        for (int j = 0; j <= n - l - k; ++j) {
-          for (int i = 0; i <= n - l - k - j; ++i) result.push_back({2 * i, 2 * j, 2 * k + odd, 2 * l + odd});
-        }
-      }
-    }
-  }
-  return result;
-}
-
-RayPolynomial::RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
-                             std::optional<std::size_t> primary_wavelength)
+RayPolynomial::RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits, std::size_t primary_wavelength)
     : data_(std::make_shared<const Data>(degree, domain, std::move(fits), primary_wavelength)) {}
 
 int RayPolynomial::degree() const noexcept { return data_->degree; }
 const RayPolynomial::Domain& RayPolynomial::domain() const noexcept { return data_->domain; }
 const std::vector<RayPolynomial::Fit>& RayPolynomial::fits() const noexcept { return data_->fits; }
-std::size_t RayPolynomial::primary_wavelength() const noexcept { return data_->primary; }
 
 template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "petzval/core/config.hpp"
@@ -48,8 +47,10 @@ class PETZVAL_API RayPolynomial {
   /// (Ax fx + Bx px, Ay fy + By py).
   struct Fit {
     double wavelength_nm = 0;
-    /// A and B of s, in the order of terms(degree); with mirror symmetry in the order of mirror_terms(degree), x, then
-    /// y.
+    /// A and B of s: coefficients of u^i v^j w^k with i + j + k <= (degree - 1) / 2; k changes slowest, i fastest. With
+    /// mirror symmetry along x, then along y: coefficients of f^2i p^2j f'^2k p'^2l with i + j + k + l <=
+    /// (degree - 1) / 2, and f' and p' along the other axis; l changes slowest, i fastest. Then come f' p' times the
+    /// terms of degree - 2.
     std::vector<double> direction_by_film = {}, direction_by_pupil = {};
     std::vector<double> offset_by_film = {}, offset_by_pupil = {};  ///< A and B of o, mm
     /// Errors of angle and offset for rays that were not fitted, uniform over film and pupils. max_rad and max_mm are
@@ -70,26 +71,6 @@ class PETZVAL_API RayPolynomial {
     /// Set for a lens with mirror symmetry: shift and radius along x; the members above are then along y.
     std::optional<Section> along_x = {};
   };
-  struct Term {
-    int u, v, w;  ///< exponents
-  };
-  /// The terms u^i v^j w^k with i + j + k <= (degree - 1) / 2, in the order of coefficients: k changes slowest, i
-  /// fastest.
-  ///
-  /// @throws Error if the degree is not 3, 5, 7, 9 or 11
-  static std::vector<Term> terms(int degree);
-  /// Exponents of film and pupil point along the component's own axis and along the other axis.
-  struct MirrorTerm {
-    int film, pupil, other_film, other_pupil;
-  };
-  /// The terms for mirror symmetry, in the order of coefficients.
-  ///
-  /// These are f^2i p^2j f'^2k p'^2l with i + j + k + l <= (degree - 1) / 2, and f' and p' along the other axis; l
-  /// changes slowest, then k and j, i fastest. Then come f' p' times the terms of degree - 2.
-  ///
-  /// @throws Error if terms() does
-  static std::vector<MirrorTerm> mirror_terms(int degree);
-
   /// Fits polynomials to exact rays through the pupils, for all compiled wavelengths.
   ///
   /// Least squares by QR in double. The focus of the film's centre is the focus at which exact rays are sharpest (with
@@ -108,16 +89,13 @@ class PETZVAL_API RayPolynomial {
   /// @param degree              3, 5, 7, 9 or 11
   /// @param domain              domain of all fits
   /// @param fits                one fit per wavelength
-  /// @param primary_wavelength  position of the default fit; if unset, the fit nearest to the d line
-  /// @throws Error              if the data are inconsistent (the message names the entry) or a wavelength repeats
-  RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
-                std::optional<std::size_t> primary_wavelength = {});
+  /// @param primary_wavelength  position of the default fit
+  /// @throws Error              if the degree is another number or a coefficient is too large for float
+  RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits, std::size_t primary_wavelength = 0);
 
   int degree() const noexcept;
   const Domain& domain() const noexcept;
   const std::vector<Fit>& fits() const noexcept;
-  /// Position of the fit for the lens's primary wavelength, the default of all calls.
-  std::size_t primary_wavelength() const noexcept;
 
   /// Maps N image-space rays to rays towards the scene.
   ///
