@@ -86,7 +86,7 @@
 
 /* ---- Positions in the table ---- */
 
-#define PZ_FORMAT 5 /* number at position 0 */
+#define PZ_FORMAT 6 /* number at position 0 */
 #define PZ_RAYS 2   /* 0: surfaces, 1: polynomial */
 #define PZ_WAVELENGTH_COUNT 3
 #define PZ_PRIMARY 4
@@ -123,32 +123,29 @@
 #define PZ_PUPIL_COLUMNS 35
 #define PZ_ROWS_PER_MM 36
 #define PZ_HALF_WIDTHS 37
-#define PZ_CELLS 38
-#define PZ_CELL_SIZE 39
-#define PZ_OBSCURED 40
-#define PZ_CORRECTIONS 41
-#define PZ_STOPS 42
-#define PZ_STOP_SIZE 43
-#define PZ_TERMS 44
-#define PZ_DEGREE 45
-#define PZ_DOMAIN_FILM 46
-#define PZ_DOMAIN_SHIFT_X 47
-#define PZ_DOMAIN_RADIUS_X 48
-#define PZ_DOMAIN_SHIFT_Y 49
-#define PZ_DOMAIN_RADIUS_Y 50
-#define PZ_REFERENCE_Z 51
-#define PZ_SCENE_DIMENSIONS 52
-#define PZ_CENTRE_Z 53
-#define PZ_STEEPEST 54
-#define PZ_FRONT_HALF 55
-#define PZ_NODES 56
-#define PZ_NODE_SIZE 57
-#define PZ_WIDEST 58
-#define PZ_BALLS 59
-#define PZ_HEAD 60
+#define PZ_FILM_NODES 38 /* the next number is the size of a node, also for stops and scene nodes */
+#define PZ_FILM_NODE_SIZE 39
+#define PZ_STOPS 40
+#define PZ_STOP_SIZE 41
+#define PZ_TERMS 42
+#define PZ_DEGREE 43
+#define PZ_DOMAIN_FILM 44
+#define PZ_DOMAIN_SHIFT_X 45
+#define PZ_DOMAIN_RADIUS_X 46
+#define PZ_DOMAIN_SHIFT_Y 47
+#define PZ_DOMAIN_RADIUS_Y 48
+#define PZ_REFERENCE_Z 49
+#define PZ_SCENE_DIMENSIONS 50
+#define PZ_CENTRE_Z 51
+#define PZ_STEEPEST 52
+#define PZ_FRONT_HALF 53
+#define PZ_SCENE_NODES 54
+#define PZ_SCENE_NODE_SIZE 55
+#define PZ_WIDEST 56
+#define PZ_BALLS 57
+#define PZ_HEAD 58
 
 #define PZ_SURFACE_SIZE 12
-#define PZ_CORNERS 64
 
 /* ---- Types ---- */
 
@@ -189,6 +186,8 @@ PZ_FN int pz_whole(PZ_T int at) { return PZ_INT(PZ_AT(at)); }
 PZ_FN float pz_abs(float x) { return x < 0.0f ? -x : x; }
 PZ_FN float pz_clamped(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 PZ_FN PZ_BOOL pz_finite(float x) { return pz_abs(x) <= 3.0e38f; }
+/* The whole part of x, from 0 to n - 1. */
+PZ_FN int pz_below(int n, float x) { return x < PZ_FLOAT(n) - 1.0f ? (x > 0.0f ? PZ_INT(x) : 0) : n - 1; }
 PZ_FN pz_point pz_xy(float x, float y) {
   pz_point p;
   p.x = x;
@@ -203,10 +202,12 @@ PZ_FN pz_vector pz_xyz(float x, float y, float z) {
   return v;
 }
 PZ_FN float pz_dot(pz_vector a, pz_vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PZ_FN pz_vector pz_times(float s, pz_vector a) { return pz_xyz(s * a.x, s * a.y, s * a.z); }
 /* a + s b */
 PZ_FN pz_vector pz_along(pz_vector a, float s, pz_vector b) {
   return pz_xyz(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
+PZ_FN pz_point pz_plus(pz_point a, float s, pz_point b) { return pz_xy(a.x + s * b.x, a.y + s * b.y); }
 
 /* The fraction of a turn from +y towards +x of a direction, in [-1/2, 1/2], within 6e-8: asin(a) / 2 pi up to an eighth
  * of a turn by a polynomial of least maximum error, and symmetry. */
@@ -248,11 +249,11 @@ PZ_FN pz_point pz_raster(PZ_T pz_point film) {
   return pz_xy((0.5f - (film.x - PZ_AT(PZ_FILM_X)) / PZ_AT(PZ_FILM_WIDTH)) * PZ_AT(PZ_COLUMNS),
                (0.5f + (film.y - PZ_AT(PZ_FILM_Y)) / PZ_AT(PZ_FILM_HEIGHT)) * PZ_AT(PZ_ROWS));
 }
-PZ_FN PZ_BOOL pz_on_film(PZ_T float x, float y) {
+PZ_FN PZ_BOOL pz_on_film(PZ_T pz_point film) {
   float half_width = 0.5f * PZ_AT(PZ_FILM_WIDTH) + PZ_AT(PZ_MARGIN);
   float half_height = 0.5f * PZ_AT(PZ_FILM_HEIGHT) + PZ_AT(PZ_MARGIN);
-  return pz_abs(x - PZ_AT(PZ_FILM_X)) <= half_width * 1.000001f &&
-         pz_abs(y - PZ_AT(PZ_FILM_Y)) <= half_height * 1.000001f;
+  return pz_abs(film.x - PZ_AT(PZ_FILM_X)) <= half_width * 1.000001f &&
+         pz_abs(film.y - PZ_AT(PZ_FILM_Y)) <= half_height * 1.000001f;
 }
 
 /* ---- Wavelengths ---- */
@@ -276,23 +277,24 @@ PZ_FN pz_light pz_light_of(PZ_T float nm) {
     }
   }
   found.compiled = least <= 0.005f;
-  if (!found.compiled && !(nm >= PZ_AT(PZ_SHORTEST) && nm <= PZ_AT(PZ_LONGEST))) {
-    found.nearest = -1;
-  }
+  if (!found.compiled && !(nm >= PZ_AT(PZ_SHORTEST) && nm <= PZ_AT(PZ_LONGEST))) found.nearest = -1;
   found.t = t < 1.0f ? (t > -1.0f ? t : -1.0f) : 1.0f;
   return found;
+}
+/* True if rays have this wavelength: polynomials have the compiled ones only. */
+PZ_FN PZ_BOOL pz_has_light(PZ_T pz_light light) {
+  return light.nearest >= 0 && (PZ_AT(PZ_RAYS) == 0.0f || light.compiled);
 }
 /* A number that depends on the wavelength: 0 scale of weights, 1 importance, 2 density of film samples, 3 area of the
  * entrance pupil, then the squared index of each space, then its change at each surface. */
 PZ_FN float pz_number(PZ_T pz_light light, int k) {
+  int at = pz_whole(PZ_P PZ_POWERS) + 8 * k;
+  float sum = 0.0f;
   if (light.compiled) {
     return PZ_AT(pz_whole(PZ_P PZ_NUMBERS) + light.nearest * pz_whole(PZ_P PZ_NUMBER_COUNT) + k);
-  } else {
-    int at = pz_whole(PZ_P PZ_POWERS) + 8 * k;
-    float sum = 0.0f;
-    for (int i = 7; i >= 0; --i) sum = sum * light.t + PZ_AT(at + i);
-    return sum;
   }
+  for (int i = 7; i >= 0; --i) sum = sum * light.t + PZ_AT(at + i);
+  return sum;
 }
 
 /* ---- Check of a table ---- */
@@ -305,121 +307,154 @@ PZ_FN int pz_count(PZ_T int at, int most) {
 }
 /* a b, or most + 1 if this is more; a and b are from 0 to most + 1. */
 PZ_FN int pz_product(int a, int b, int most) { return b == 0 || a <= most / b ? a * b : most + 1; }
-/* True if the table has n numbers from the position on that is stored at `at`. */
-PZ_FN PZ_BOOL pz_has(PZ_T int at, int n, int floats) {
-  int begin = pz_count(PZ_P at, floats);
-  return begin >= PZ_HEAD && n <= floats - begin;
+/* True if the table has `count` times n numbers from the position on that is stored at `at`. */
+PZ_FN PZ_BOOL pz_has(PZ_T int at, int count, int n) {
+  int floats = pz_whole(PZ_P 1), begin = pz_count(PZ_P at, floats);
+  return begin >= PZ_HEAD && pz_product(count, n, floats) <= floats - begin;
+}
+/* True if the table has `count` nodes of polygons. */
+PZ_FN PZ_BOOL pz_has_nodes(PZ_T int at, int count) {
+  int size = pz_count(PZ_P at + 1, 260);
+  return (size == 132 || size == 260) && pz_has(PZ_P at, count, size);
 }
 /* True if `floats` numbers are a complete table of this format: no function reads outside of such a table. All other
- * functions trust their table: call this one first, for each table from a file. */
+ * functions trust their table: call this one first, for each table from a file. Tables of other formats have to be
+ * exported again: `petzval export LENS --camera FILE`. */
 PZ_FN PZ_BOOL pz_valid(PZ_T int floats) {
   if (floats < PZ_HEAD || floats > 16777216 || PZ_AT(0) != PZ_FLOAT(PZ_FORMAT) || PZ_AT(1) != PZ_FLOAT(floats)) {
     return PZ_FALSE;
   }
   int w = pz_count(PZ_P PZ_WAVELENGTH_COUNT, floats), surfaces = pz_count(PZ_P PZ_SURFACE_COUNT, floats);
+  int rows = pz_count(PZ_P PZ_PUPIL_ROWS, floats - 1), columns = pz_count(PZ_P PZ_PUPIL_COLUMNS, floats - 1);
   int blades = pz_count(PZ_P PZ_BLADES, floats), stop_size = pz_count(PZ_P PZ_STOP_SIZE, floats);
-  int rows = pz_count(PZ_P PZ_PUPIL_ROWS, floats), columns = pz_count(PZ_P PZ_PUPIL_COLUMNS, floats);
-  int numbers = pz_count(PZ_P PZ_NUMBER_COUNT, floats), node_size = pz_count(PZ_P PZ_NODE_SIZE, floats), cells;
-  int cell_size = pz_count(PZ_P PZ_CELL_SIZE, floats), list, count;
-  float pupils = PZ_AT(PZ_PUPIL_DIMENSIONS), scene = PZ_AT(PZ_SCENE_DIMENSIONS), rays = PZ_AT(PZ_RAYS), widest = 0.0f;
-  PZ_BOOL two = pupils == 2.0f;
+  int numbers = pz_count(PZ_P PZ_NUMBER_COUNT, floats), film = pz_count(PZ_P PZ_PUPIL_DIMENSIONS, 2);
+  int scene = pz_count(PZ_P PZ_SCENE_DIMENSIONS, 3), rays = pz_count(PZ_P PZ_RAYS, 1), nodes, widest;
+  float fields = 0.0f;
   if (w < 1 || surfaces < 1 || blades < 0 || stop_size < 0 || rows < 1 || columns < 1 || numbers != 5 + 2 * surfaces ||
-      pz_count(PZ_P PZ_PRIMARY, w - 1) < 0 || pz_count(PZ_P PZ_MIRRORS, surfaces) < 0 ||
-      pz_count(PZ_P PZ_CORRECTIONS, floats) < 0 || (pupils != 1.0f && !two) || (scene != 2.0f && scene != 3.0f) ||
-      (rays != 0.0f && rays != 1.0f)) {
+      film < 1 || scene < 2 || rays < 0 || pz_count(PZ_P PZ_PRIMARY, w - 1) < 0 ||
+      pz_count(PZ_P PZ_MIRRORS, surfaces) < 0 || !pz_has(PZ_P PZ_WAVELENGTHS, w, 1) ||
+      !pz_has(PZ_P PZ_NUMBERS, w, numbers) || !pz_has(PZ_P PZ_SURFACES, surfaces, PZ_SURFACE_SIZE) ||
+      !pz_has(PZ_P PZ_EDGES, blades, 4) || !pz_has(PZ_P PZ_BALLS, w, 1) ||
+      !pz_has(PZ_P PZ_WIDEST, w, 3 * (scene - 1))) {
     return PZ_FALSE;
   }
-  /* Wavelengths. Numbers between the compiled ones are needed if a sample can have such a wavelength. */
-  if (!pz_has(PZ_P PZ_WAVELENGTHS, w, floats) || !pz_has(PZ_P PZ_NUMBERS, pz_product(w, numbers, floats), floats)) {
-    return PZ_FALSE;
-  }
+  /* Numbers between the compiled wavelengths are needed if a sample can have such a wavelength. */
   pz_light end = pz_light_of(PZ_P PZ_AT(PZ_SHORTEST));
   if ((PZ_AT(PZ_SHORTEST) < PZ_AT(PZ_LONGEST) || (end.nearest >= 0 && !end.compiled)) &&
-      !pz_has(PZ_P PZ_POWERS, pz_product(numbers, 8, floats), floats)) {
-    return PZ_FALSE;
-  }
-  /* Surfaces and iris. */
-  if (!pz_has(PZ_P PZ_SURFACES, pz_product(surfaces, PZ_SURFACE_SIZE, floats), floats) ||
-      !pz_has(PZ_P PZ_EDGES, pz_product(blades, 4, floats), floats)) {
+      !pz_has(PZ_P PZ_POWERS, numbers, 8)) {
     return PZ_FALSE;
   }
   for (int i = 0; i < surfaces; ++i) {
-    int at = pz_whole(PZ_P PZ_SURFACES) + i * PZ_SURFACE_SIZE + 10;
-    list = pz_count(PZ_P at, floats);
+    int at = pz_whole(PZ_P PZ_SURFACES) + i * PZ_SURFACE_SIZE + 10, list = pz_count(PZ_P at, floats);
     if (list == 0) continue;
-    if (!pz_has(PZ_P at, 4, floats)) return PZ_FALSE;
+    if (!pz_has(PZ_P at, 4, 1)) return PZ_FALSE;
     int even = pz_count(PZ_P list + 2, floats), odd = pz_count(PZ_P list + 3, floats);
-    if (even < 0 || odd < 0 || !pz_has(PZ_P at, 4 + even + odd, floats)) return PZ_FALSE;
+    if (even < 0 || odd < 0 || !pz_has(PZ_P at, 4 + even + odd, 1)) return PZ_FALSE;
   }
-  /* Pupils of film points: the row of each film point within reach is a whole number. */
-  cells = pz_product(pz_product(w, rows, floats), two ? columns : 1, floats);
-  if (cell_size < (two                          ? 1122
-                   : PZ_AT(PZ_OBSCURED) != 0.0f ? 784
-                                                : 528) ||
-      !pz_has(PZ_P PZ_CELLS, pz_product(cells, cell_size, floats), floats) ||
-      (two && !pz_has(PZ_P PZ_HALF_WIDTHS, rows + 1, floats)) || !(PZ_AT(PZ_ROWS_PER_MM) >= 0.0f) ||
-      !(PZ_AT(PZ_REACH) >= 0.0f && PZ_AT(PZ_REACH) <= 1.0e15f && PZ_AT(PZ_REACH) * PZ_AT(PZ_ROWS_PER_MM) <= 1.0e9f)) {
+  nodes = pz_product(pz_product(w, rows + 1, floats), film == 2 ? columns + 1 : 1, floats);
+  if (!pz_has_nodes(PZ_P PZ_FILM_NODES, nodes) || (film == 2 && !pz_has(PZ_P PZ_HALF_WIDTHS, rows + 1, 1)) ||
+      (stop_size != 0 && (blades < 1 || stop_size < (film == 2 ? 158 : 150) ||
+                          !pz_has(PZ_P PZ_STOPS, nodes, stop_size) || !pz_has(PZ_P PZ_IRIS, 16 + 6 * blades, 1)))) {
     return PZ_FALSE;
   }
-  if (stop_size != 0 && (blades < 1 || stop_size < (two ? 610 : 296) ||
-                         !pz_has(PZ_P PZ_STOPS, pz_product(cells, stop_size, floats), floats) ||
-                         !pz_has(PZ_P PZ_IRIS, 16 + pz_product(blades, 6, floats), floats))) {
-    return PZ_FALSE;
-  }
-  if (rays == 1.0f) {
+  if (rays == 1) {
     int degree = pz_count(PZ_P PZ_DEGREE, 99), n = (degree - 1) / 2, terms = (n + 1) * (n + 2) * (n + 3) / 6;
-    terms = two ? 4 * (n + 2) * terms : 4 * terms; /* two: 8 (n + 1) (n + 2)^2 (n + 3) / 12 */
-    if (degree < 1 || !pz_has(PZ_P PZ_TERMS, pz_product(w, terms, floats), floats)) return PZ_FALSE;
+    terms = film == 2 ? 4 * (n + 2) * terms : 4 * terms; /* two: 8 (n + 1) (n + 2)^2 (n + 3) / 12 */
+    if (degree < 1 || !pz_has(PZ_P PZ_TERMS, w, terms)) return PZ_FALSE;
   }
-  /* Pupils of scene points: without nodes, all last fields are 0. */
-  count = pz_product(w, scene == 3.0f ? 6 : 3, floats);
-  if (!pz_has(PZ_P PZ_WIDEST, count, floats) || !pz_has(PZ_P PZ_BALLS, w, floats)) return PZ_FALSE;
-  list = pz_whole(PZ_P PZ_WIDEST);
-  for (int i = 0; i < count; ++i) {
-    if (!(PZ_AT(list + i) >= 0.0f)) return PZ_FALSE;
-    widest += PZ_AT(list + i);
+  /* Without nodes of scene points, all last fields are 0. */
+  widest = pz_whole(PZ_P PZ_WIDEST);
+  for (int i = 0; i < 3 * w * (scene - 1); ++i) {
+    if (!(PZ_AT(widest + i) >= 0.0f)) return PZ_FALSE;
+    fields += PZ_AT(widest + i);
   }
-  count = pz_product(w, scene == 3.0f ? 147 : 39, floats);
-  count = widest == 0.0f ? 0 : pz_product(count, node_size, floats);
-  return (node_size == 132 || node_size == 260) && pz_has(PZ_P PZ_NODES, count, floats);
+  nodes = fields == 0.0f ? 0 : pz_product(w, scene == 3 ? 147 : 39, floats);
+  return pz_has_nodes(PZ_P PZ_SCENE_NODES, nodes);
 }
 
-/* ---- Iris ---- */
+/* ---- Polygons between nodes ---- */
 
-/* Point (u, v) of an iris with blades, in semi-diameters of the stop: u counts sectors from the first corner, and v is
- * the fraction of the area nearer to the centre. */
-PZ_FN pz_point pz_iris_point(PZ_T float u, float v) {
-  int blades = pz_whole(PZ_P PZ_BLADES), list = pz_whole(PZ_P PZ_IRIS);
-  float at = u * PZ_FLOAT(blades), q, t, across = 0.0f, along = 0.0f, radius = PZ_SQRT(v), sine, cosine;
-  int k = PZ_INT(at) < blades - 1 ? PZ_INT(at) : blades - 1;
-  q = 2.0f * (at - PZ_FLOAT(k)) - 1.0f;
-  t = 2.0f * q * q - 1.0f;
-  for (int i = 7; i >= 0; --i) {
-    across = across * t + PZ_AT(list + i);
-    along = along * t + PZ_AT(list + 8 + i);
-  }
-  across *= q;
-  sine = PZ_AT(list + 16 + 2 * k);
-  cosine = PZ_AT(list + 17 + 2 * k);
-  return pz_xy(radius * (along * sine + across * cosine), radius * (along * cosine - across * sine));
-}
-/* Distance of a point inside edge k of the iris. list: edges in mm or in semi-diameters. */
-PZ_FN float pz_inside(PZ_T int list, int k, float x, float y) {
-  int edge = list + 4 * k;
-  return PZ_AT(edge + 3) - (x * PZ_AT(edge) + y * PZ_AT(edge + 1) + PZ_AT(edge + 2) * (x * x + y * y));
-}
-PZ_FN int pz_unit_edges(PZ_T int blades) { return pz_whole(PZ_P PZ_IRIS) + 16 + 2 * blades; }
-
-/* ---- Pupils of film points ---- */
-
-/* A pupil is a polygon with a middle and 64 corners around it, in order from +y towards +x. Sector k is the triangle
- * between the middle and corners k and k + 1; an interval of its squared relative radii may be obscured. */
-PZ_STRUCT(pz_sector) {
-  pz_point a, b; /* the corners, relative to the middle */
-  float dark_from, dark;
+/* A cell of a grid of nodes and a place in it. Numbers of nodes are linear along each axis of the grid. */
+PZ_STRUCT(pz_cell) {
+  int list;       /* position in the head of the list of nodes; the size of a node follows */
+  int node;       /* first node of the cell */
+  int row, layer; /* nodes from one node to the next along the second and the third axis; 0: there is no such axis */
+  float t, s, r;  /* fractions along the axes */
 };
+/* The cell at a place: its numbers along the axes, which have so many cells. w: wavelength */
+PZ_FN pz_cell pz_cell_at(int list, int w, pz_vector place, int cells, int rows, int layers) {
+  pz_cell c;
+  int i = pz_below(cells, place.x), j = pz_below(rows, place.y), k = pz_below(layers, place.z);
+  c.list = list;
+  c.row = rows > 0 ? cells + 1 : 0;
+  c.layer = layers > 0 ? (cells + 1) * (rows + 1) : 0;
+  c.node = w * (cells + 1) * (rows + 1) * (layers + 1) + i + j * c.row + k * c.layer;
+  c.t = place.x - PZ_FLOAT(i);
+  c.s = place.y - PZ_FLOAT(j);
+  c.r = place.z - PZ_FLOAT(k);
+  return c;
+}
+PZ_FN float pz_linear(PZ_T int at, int step, float t) { return PZ_AT(at) + t * (PZ_AT(at + step) - PZ_AT(at)); }
+PZ_FN float pz_bilinear(PZ_T pz_cell c, int at, int size) {
+  float sum = pz_linear(PZ_P at, size, c.t);
+  return c.row == 0 ? sum : sum + c.s * (pz_linear(PZ_P at + c.row * size, size, c.t) - sum);
+}
+/* Number k of the nodes. */
+PZ_FN float pz_between(PZ_T pz_cell c, int k) {
+  int size = pz_whole(PZ_P c.list + 1), at = pz_whole(PZ_P c.list) + c.node * size + k;
+  float sum = pz_bilinear(PZ_P c, at, size);
+  return c.layer == 0 ? sum : sum + c.r * (pz_bilinear(PZ_P c, at + c.layer * size, size) - sum);
+}
+PZ_FN pz_point pz_point_between(PZ_T pz_cell c, int k) {
+  return pz_xy(pz_between(PZ_P c, k), pz_between(PZ_P c, k + 1));
+}
+
+/* A pupil is a polygon: a middle and 64 corners around it, in order from +y towards +x. Sector k is the triangle from
+ * the middle to corners k and k + 1. All sectors get the same number of samples. */
+PZ_STRUCT(pz_sector) {
+  int k;
+  pz_point a, b;         /* the corners, relative to the middle */
+  float dark_from, dark; /* begin and width of the obscured interval of squared relative radii */
+  float along;           /* a place on the outer edge, from a (0) to b (1) ... */
+  pz_point edge;         /* ... and its point, relative to the middle */
+};
+PZ_FN pz_point pz_middle(PZ_T pz_cell c) { return pz_point_between(PZ_P c, 0); }
+PZ_FN pz_point pz_corner(PZ_T pz_cell c, int k) { return pz_point_between(PZ_P c, 2 + 2 * k); }
+/* The change of the middle from one node to the next along the first or the second axis. */
+PZ_FN pz_point pz_step_of_middle(PZ_T pz_cell c, PZ_BOOL first) {
+  pz_cell end = c;
+  c.t = first ? 0.0f : c.t;
+  c.s = first ? c.s : 0.0f;
+  end.t = first ? 1.0f : c.t;
+  end.s = first ? c.s : 1.0f;
+  return pz_plus(pz_middle(PZ_P end), -1.0f, pz_middle(PZ_P c));
+}
 /* Twice the area of the triangle from the middle to a and b. */
 PZ_FN float pz_turn(pz_point a, pz_point b) { return b.x * a.y - a.x * b.y; }
+PZ_FN pz_sector pz_sector_of(PZ_T pz_cell c, int k) {
+  pz_sector s;
+  pz_point dark = pz_xy(0.0f, 0.0f);
+  if (pz_whole(PZ_P c.list + 1) > 132) dark = pz_point_between(PZ_P c, 132 + 2 * k);
+  s.k = k;
+  s.a = s.edge = pz_corner(PZ_P c, k);
+  s.b = pz_corner(PZ_P c, k + 1);
+  s.dark_from = dark.x;
+  s.dark = dark.y;
+  s.along = 0.0f;
+  return s;
+}
+PZ_FN pz_sector pz_with_place(pz_sector s, float along) {
+  s.along = along;
+  s.edge = pz_xy(s.a.x + along * (s.b.x - s.a.x), s.a.y + along * (s.b.y - s.a.y));
+  return s;
+}
+/* The sector of a sample: `turn` is the fraction of the sectors before it. */
+PZ_FN pz_sector pz_sector_after(PZ_T pz_cell c, float turn) {
+  int k = pz_below(64, 64.0f * turn);
+  return pz_with_place(pz_sector_of(PZ_P c, k), 64.0f * turn - PZ_FLOAT(k));
+}
+/* The area that a sample of a sector represents. */
+PZ_FN float pz_area_of(pz_sector s) { return 32.0f * pz_turn(s.a, s.b) * (1.0f - s.dark); }
 PZ_FN float pz_squared_radius(pz_sector s, float v) {
   float within = (1.0f - s.dark) * v;
   return within < s.dark_from ? within : within + s.dark;
@@ -429,208 +464,203 @@ PZ_FN float pz_fraction_within(pz_sector s, float squared) {
   float past = squared - s.dark > s.dark_from ? squared - s.dark : s.dark_from, left = 1.0f - s.dark;
   return (squared < s.dark_from ? squared : past) / (left > 0.0f ? left : 1.0f);
 }
-/* The squared relative radius of a point in the direction of a sector: 0 in the middle, 1 at the edge; -1: the point
- * lies in another direction. */
-PZ_FN float pz_squared_at(pz_sector s, pz_point q) {
-  float behind = pz_turn(s.a, q), before = pz_turn(q, s.b), whole = pz_turn(s.a, s.b);
-  float radius = (behind + before) / (whole > 0.0f ? whole : 1.0f);
-  return behind >= 0.0f && before >= 0.0f && whole > 0.0f ? radius * radius : -1.0f;
-}
-PZ_FN PZ_BOOL pz_is_dark(pz_sector s, float squared) {
-  return squared >= s.dark_from && squared < s.dark_from + s.dark;
+/* The point on the line from the middle to the place of a sector. */
+PZ_FN pz_point pz_in_polygon(PZ_T pz_cell c, pz_sector s, float v) {
+  return pz_plus(pz_middle(PZ_P c), PZ_SQRT(pz_squared_radius(s, v)), s.edge);
 }
 /* True if a corner comes before the direction of q in the order of corners, which begins at the first corner. */
 PZ_FN PZ_BOOL pz_comes_before(pz_point first, pz_point corner, pz_point q) {
   PZ_BOOL half_q = pz_turn(first, q) < 0.0f, half_corner = pz_turn(first, corner) < 0.0f;
   return half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner;
 }
-/* The point of the outer edge at a fraction from a to b. */
-PZ_FN pz_point pz_on_edge(pz_sector s, float along) {
-  return pz_xy(s.a.x + along * (s.b.x - s.a.x), s.a.y + along * (s.b.y - s.a.y));
+/* The sector and place in the direction of q, a point relative to the middle. */
+PZ_FN pz_sector pz_sector_towards(PZ_T pz_cell c, pz_point q) {
+  pz_point first = pz_corner(PZ_P c, 0);
+  int k = 0;
+  for (int step = 32; step > 0; step /= 2) {
+    if (pz_comes_before(first, pz_corner(PZ_P c, k + step), q)) k += step;
+  }
+  pz_sector s = pz_sector_of(PZ_P c, k);
+  float behind = pz_turn(s.a, q), sum = behind + pz_turn(q, s.b);
+  return pz_with_place(s, sum > 0.0f ? behind / sum : 0.0f);
+}
+/* The squared relative radius of q in its sector, 0 in the middle and 1 at the edge; -1: no sample has this place. */
+PZ_FN float pz_squared_at(pz_sector s, pz_point q) {
+  float behind = pz_turn(s.a, q), before = pz_turn(q, s.b), whole = pz_turn(s.a, s.b), squared;
+  if (!(behind >= 0.0f && before >= 0.0f && whole > 0.0f)) return -1.0f;
+  squared = (behind + before) / whole * ((behind + before) / whole);
+  return squared >= s.dark_from && squared < s.dark_from + s.dark ? -1.0f : squared;
 }
 
-/* The place of a film point in the grid of pupils. One dimension: rows over the distance from the axis, with polygons
- * that turn with the film point. Two dimensions: cells of the quadrant x, y >= 0, with mirror images for the others. */
-PZ_STRUCT(pz_cell) {
-  PZ_BOOL known;
-  PZ_BOOL two;     /* two dimensions */
-  int cell, begin; /* begin: position of its numbers in the table */
-  float t, s, sine, cosine;
+/* ---- Pupils of film points ---- */
+
+/* The cell of a film point. One dimension: rows over the distance from the axis, with polygons that turn with the film
+ * point. Two dimensions: rows and columns of the quadrant x, y >= 0, with mirror images for the others. */
+PZ_STRUCT(pz_pupil) {
+  PZ_BOOL known, two; /* two: two dimensions */
+  pz_cell cell;
+  float sine, cosine;   /* of the direction of the film point from +y towards +x; two: signs of x and y */
+  float t_by_x, t_by_y; /* two: derivatives of t by |x| and |y| */
 };
-PZ_FN pz_cell pz_find_cell(PZ_T float x, float y, int w) {
-  pz_cell found;
-  float reach = PZ_AT(PZ_REACH), r2 = x * x + y * y, rows_per_mm = PZ_AT(PZ_ROWS_PER_MM);
+PZ_FN pz_pupil pz_find_pupil(PZ_T float x, float y, int w) {
+  pz_pupil p;
+  float r2 = x * x + y * y, r = PZ_SQRT(r2), per_mm = PZ_AT(PZ_ROWS_PER_MM), across, up;
   int rows = pz_whole(PZ_P PZ_PUPIL_ROWS), columns = pz_whole(PZ_P PZ_PUPIL_COLUMNS);
-  found.two = PZ_AT(PZ_PUPIL_DIMENSIONS) == 2.0f;
-  found.s = 0.0f;
-  if (!found.two) {
-    float r = PZ_SQRT(r2), position;
-    PZ_BOOL off_axis = r2 > 1.0e-31f;
-    found.known = r <= reach;
-    position = found.known ? r * rows_per_mm : 0.0f;
-    int i = PZ_INT(position) < rows - 1 ? PZ_INT(position) : rows - 1;
-    found.t = position - PZ_FLOAT(i);
-    found.sine = off_axis ? x / r : 0.0f;
-    found.cosine = off_axis ? y / r : 1.0f;
-    found.cell = i + w * rows;
+  p.two = PZ_AT(PZ_PUPIL_DIMENSIONS) == 2.0f;
+  p.known = r <= PZ_AT(PZ_REACH);
+  p.t_by_x = p.t_by_y = 0.0f;
+  if (!p.two) {
+    p.sine = r2 > 1.0e-31f ? x / r : 0.0f;
+    p.cosine = r2 > 1.0e-31f ? y / r : 1.0f;
+    p.cell = pz_cell_at(PZ_FILM_NODES, w, pz_xyz(p.known ? r * per_mm : 0.0f, 0.0f, 0.0f), rows, 0, 0);
   } else {
-    float row = pz_abs(y) * rows_per_mm, width, column;
-    int i, j, widths = pz_whole(PZ_P PZ_HALF_WIDTHS);
-    found.known = r2 <= reach * reach && row <= 1.000001f * PZ_FLOAT(rows);
-    row = found.known ? row : 0.0f;
-    i = PZ_INT(row) < rows - 1 ? PZ_INT(row) : rows - 1;
-    found.s = row - PZ_FLOAT(i);
-    width = PZ_AT(widths + i) + found.s * (PZ_AT(widths + i + 1) - PZ_AT(widths + i));
-    found.known = found.known && pz_abs(x) <= 1.000001f * width;
-    column = found.known ? pz_abs(x) / (width > 0.0f ? width : 1.0f) * PZ_FLOAT(columns) : 0.0f;
-    j = PZ_INT(column) < columns - 1 ? PZ_INT(column) : columns - 1;
-    found.t = column - PZ_FLOAT(j);
-    found.sine = x < 0.0f ? -1.0f : 1.0f;
-    found.cosine = y < 0.0f ? -1.0f : 1.0f;
-    found.cell = (w * rows + i) * columns + j;
+    p.known = p.known && pz_abs(y) * per_mm <= 1.000001f * PZ_FLOAT(rows);
+    up = p.known ? pz_abs(y) * per_mm : 0.0f;
+    int row = pz_below(rows, up), widths = pz_whole(PZ_P PZ_HALF_WIDTHS) + row;
+    float width = pz_linear(PZ_P widths, 1, up - PZ_FLOAT(row)), change = PZ_AT(widths + 1) - PZ_AT(widths);
+    p.known = p.known && pz_abs(x) <= 1.000001f * width;
+    p.t_by_x = width > 0.0f ? PZ_FLOAT(columns) / width : 0.0f;
+    across = p.known ? pz_abs(x) / (width > 0.0f ? width : 1.0f) * PZ_FLOAT(columns) : 0.0f;
+    p.t_by_y = width > 0.0f ? -across * change * per_mm / width : 0.0f;
+    p.sine = x < 0.0f ? -1.0f : 1.0f;
+    p.cosine = y < 0.0f ? -1.0f : 1.0f;
+    p.cell = pz_cell_at(PZ_FILM_NODES, w, pz_xyz(across, up, 0.0f), columns, rows, 0);
   }
-  found.begin = pz_whole(PZ_P PZ_CELLS) + found.cell * pz_whole(PZ_P PZ_CELL_SIZE);
-  return found;
+  return p;
 }
 /* A point in the frame of the film from the frame of the grid, and back. */
-PZ_FN pz_point pz_to_film(pz_cell c, pz_point p) {
-  if (c.two) return pz_xy(c.sine * p.x, c.cosine * p.y);
-  return pz_xy(c.cosine * p.x + c.sine * p.y, c.cosine * p.y - c.sine * p.x);
+PZ_FN pz_point pz_to_film(pz_pupil p, pz_point q) {
+  if (p.two) return pz_xy(p.sine * q.x, p.cosine * q.y);
+  return pz_xy(p.cosine * q.x + p.sine * q.y, p.cosine * q.y - p.sine * q.x);
 }
-PZ_FN pz_point pz_to_grid(pz_cell c, pz_point p) {
-  if (c.two) return pz_xy(c.sine * p.x, c.cosine * p.y);
-  return pz_xy(c.cosine * p.x - c.sine * p.y, c.sine * p.x + c.cosine * p.y);
-}
-/* A value of the cell: coefficients of 1, t, or of 1, t, s, s t. */
-PZ_FN float pz_value(PZ_T pz_cell c, int at) {
-  float along = PZ_AT(at) + c.t * PZ_AT(at + 1);
-  return c.two ? along + c.s * (PZ_AT(at + 2) + c.t * PZ_AT(at + 3)) : along;
-}
-PZ_FN pz_point pz_values(PZ_T pz_cell c, int at) {
-  return pz_xy(pz_value(PZ_P c, at), pz_value(PZ_P c, at + (c.two ? 4 : 2)));
-}
-/* An area of the cell: coefficients of 1, t, t^2, t^3, or of 1, t, t^2, s, s t, s t^2, s^2, s^2 t, s^2 t^2. */
-PZ_FN float pz_cell_area(PZ_T pz_cell c, int at) {
-  float t = c.t, one = PZ_AT(at) + t * (PZ_AT(at + 1) + t * PZ_AT(at + 2)), by_s, by_s2;
-  if (!c.two) return one + t * t * t * PZ_AT(at + 3);
-  by_s = PZ_AT(at + 3) + t * (PZ_AT(at + 4) + t * PZ_AT(at + 5));
-  by_s2 = PZ_AT(at + 6) + t * (PZ_AT(at + 7) + t * PZ_AT(at + 8));
-  return one + c.s * (by_s + c.s * by_s2);
-}
-PZ_FN int pz_corner_at(pz_cell c, int k) { return c.begin + (c.two ? 17 + 17 * k : 8 + 8 * k); }
-PZ_FN pz_point pz_corner(PZ_T pz_cell c, int k) { return pz_values(PZ_P c, pz_corner_at(c, k)); }
-PZ_FN pz_point pz_middle(PZ_T pz_cell c) {
-  if (c.two) return pz_values(PZ_P c, c.begin);
-  return pz_xy(0.0f, pz_value(PZ_P c, c.begin + 2));
-}
-PZ_FN float pz_area_before(PZ_T pz_cell c, int k) { return pz_cell_area(PZ_P c, pz_corner_at(c, k) + (c.two ? 8 : 4)); }
-PZ_FN float pz_whole_area(PZ_T pz_cell c) { return pz_cell_area(PZ_P c, c.begin + (c.two ? 8 : 4)); }
-PZ_FN pz_sector pz_sector_of(PZ_T pz_cell c, int k) {
-  pz_sector s;
-  s.a = pz_corner(PZ_P c, k);
-  s.b = pz_corner(PZ_P c, k + 1);
-  s.dark_from = 0.0f;
-  s.dark = 0.0f;
-  if (!c.two && PZ_AT(PZ_OBSCURED) != 0.0f) {
-    pz_point dark = pz_values(PZ_P c, c.begin + 528 + 4 * k);
-    s.dark_from = dark.x;
-    s.dark = dark.y;
-  }
-  return s;
+PZ_FN pz_point pz_to_grid(pz_pupil p, pz_point q) {
+  if (p.two) return pz_xy(p.sine * q.x, p.cosine * q.y);
+  return pz_xy(p.cosine * q.x - p.sine * q.y, p.sine * q.x + p.cosine * q.y);
 }
 
-/* The image of a stop point in the pupil plane, in the frame of the grid, with derivatives by the stop point. */
-PZ_STRUCT(pz_seen) { pz_point at, by_x, by_y; };
-PZ_FN int pz_stop_at(PZ_T pz_cell c) { return pz_whole(PZ_P PZ_STOPS) + c.cell * pz_whole(PZ_P PZ_STOP_SIZE); }
-PZ_FN pz_seen pz_see(PZ_T pz_cell c, pz_point stop) {
+/* ---- Iris ---- */
+
+/* Point (u, v) of an iris with blades, in semi-diameters of the stop: u counts sectors from the first corner, and v is
+ * the fraction of the area nearer to the centre. */
+PZ_FN pz_point pz_iris_point(PZ_T float u, float v) {
+  int blades = pz_whole(PZ_P PZ_BLADES), list = pz_whole(PZ_P PZ_IRIS), k = pz_below(blades, u * PZ_FLOAT(blades));
+  float q = 2.0f * (u * PZ_FLOAT(blades) - PZ_FLOAT(k)) - 1.0f, t = 2.0f * q * q - 1.0f, across = 0.0f, along = 0.0f;
+  for (int i = 7; i >= 0; --i) {
+    across = across * t + PZ_AT(list + i);
+    along = along * t + PZ_AT(list + 8 + i);
+  }
+  float sine = PZ_AT(list + 16 + 2 * k), cosine = PZ_AT(list + 17 + 2 * k), radius = PZ_SQRT(v);
+  across *= q;
+  return pz_xy(radius * (along * sine + across * cosine), radius * (along * cosine - across * sine));
+}
+/* Distance of a point inside an edge of the iris. edge: its position in the table, in mm or in semi-diameters */
+PZ_FN float pz_inside(PZ_T int edge, pz_point p) {
+  float bend = PZ_AT(edge + 2) * (p.x * p.x + p.y * p.y);
+  return PZ_AT(edge + 3) - (p.x * PZ_AT(edge) + p.y * PZ_AT(edge + 1) + bend);
+}
+/* True if a point lies inside all edges of a list. */
+PZ_FN PZ_BOOL pz_within(PZ_T int list, pz_point p) {
+  int blades = pz_whole(PZ_P PZ_BLADES);
+  for (int i = 0; i < blades; ++i) {
+    if (pz_inside(PZ_P list + 4 * i, p) < 0.0f) return PZ_FALSE;
+  }
+  return PZ_TRUE;
+}
+PZ_FN int pz_unit_edges(PZ_T int blades) { return pz_whole(PZ_P PZ_IRIS) + 16 + 2 * blades; }
+
+/* The stop of the pupil: numbers of the same cell. */
+PZ_FN pz_cell pz_stop_of(pz_pupil p) {
+  p.cell.list = PZ_STOPS;
+  return p.cell;
+}
+/* True if samples are points of the iris, false if they are points of the polygon inside the iris. */
+PZ_FN PZ_BOOL pz_samples_iris(PZ_T pz_pupil p) {
+  int size = pz_whole(PZ_P PZ_STOP_SIZE);
+  return size > 0 && PZ_AT(pz_whole(PZ_P PZ_STOPS) + p.cell.node * size + (p.two ? 26 : 18)) > 0.0f;
+}
+/* The image of a stop point in the pupil plane, in the frame of the grid. x and y: value, derivatives by the stop's x
+ * and y */
+PZ_STRUCT(pz_seen) { pz_vector x, y; };
+/* Polynomials of the stop point up to the third power: ten terms from number k on. */
+PZ_FN pz_vector pz_cubic(PZ_T pz_cell stop, int k, float x, float y) {
+  float a[10], xx = x * x, yy = y * y, by_x, by_y;
+  for (int i = 0; i < 10; ++i) a[i] = pz_between(PZ_P stop, k + i);
+  by_x = a[1] + 2.0f * (a[3] * x + a[7] * x * y) + a[4] * y + 3.0f * a[6] * xx + a[8] * yy;
+  by_y = a[2] + 2.0f * (a[5] * y + a[8] * x * y) + a[4] * x + 3.0f * a[9] * yy + a[7] * xx;
+  return pz_xyz(
+      a[0] + x * (a[1] + a[3] * x + a[4] * y + a[6] * xx + a[8] * yy) + y * (a[2] + a[5] * y + a[7] * xx + a[9] * yy),
+      by_x, by_y);
+}
+PZ_FN pz_seen pz_see(PZ_T pz_pupil p, float x, float y) {
   pz_seen seen;
-  float a[20], x = stop.x, y = stop.y, xx = x * x, yy = y * y;
-  int begin = pz_stop_at(PZ_P c) + 2, step = c.two ? 4 : 2, count = c.two ? 20 : 15;
-  for (int k = 0; k < count; ++k) a[k] = pz_value(PZ_P c, begin + step * k);
-  if (!c.two) {
-    float r = xx + yy, r2 = r * r, across = a[9] + y * (a[10] + a[13] * r) + a[11] * xx + a[12] * yy + a[14] * r2;
-    float by_x = 2.0f * x * (a[11] + a[13] * y + 2.0f * a[14] * r);
-    float by_y = a[10] + 2.0f * a[12] * y + a[13] * (r + 2.0f * yy) + 4.0f * a[14] * r * y;
-    seen.at.x = x * across;
-    seen.at.y =
-        a[0] + y * (a[1] + a[3] * y + a[4] * xx + a[5] * yy + a[8] * r2) + a[2] * xx + a[6] * r2 + a[7] * r * yy;
-    seen.by_x.x = across + x * by_x;
-    seen.by_x.y = 2.0f * x * (a[2] + a[4] * y + 2.0f * a[6] * r + a[7] * yy + 2.0f * a[8] * y * r);
-    seen.by_y.x = x * by_y;
-    seen.by_y.y = a[1] + 2.0f * y * (a[3] + 2.0f * a[6] * r + a[7] * (r + yy)) + a[4] * xx + 3.0f * a[5] * yy +
-                  a[8] * (r2 + 4.0f * yy * r);
+  pz_cell stop = pz_stop_of(p);
+  if (p.two) {
+    seen.x = pz_cubic(PZ_P stop, 1, x, y);
+    seen.y = pz_cubic(PZ_P stop, 11, x, y);
     return seen;
   }
-  for (int o = 0; o < 20; o += 10) {
-    float value = a[o] + x * (a[o + 1] + a[o + 3] * x + a[o + 4] * y + a[o + 6] * xx + a[o + 8] * yy) +
-                  y * (a[o + 2] + a[o + 5] * y + a[o + 7] * xx + a[o + 9] * yy);
-    float by_x =
-        a[o + 1] + 2.0f * a[o + 3] * x + a[o + 4] * y + 3.0f * a[o + 6] * xx + 2.0f * a[o + 7] * x * y + a[o + 8] * yy;
-    float by_y =
-        a[o + 2] + a[o + 4] * x + 2.0f * a[o + 5] * y + a[o + 7] * xx + 2.0f * a[o + 8] * x * y + 3.0f * a[o + 9] * yy;
-    if (o == 0) {
-      seen.at.x = value;
-      seen.by_x.x = by_x;
-      seen.by_y.x = by_y;
-    } else {
-      seen.at.y = value;
-      seen.by_x.y = by_x;
-      seen.by_y.y = by_y;
-    }
-  }
+  float a[15], xx = x * x, yy = y * y, r = xx + yy, r2 = r * r, across, by_x, by_y;
+  for (int i = 0; i < 15; ++i) a[i] = pz_between(PZ_P stop, 1 + i);
+  across = a[9] + y * (a[10] + a[13] * r) + a[11] * xx + a[12] * yy + a[14] * r2;
+  by_x = 2.0f * x * (a[11] + a[13] * y + 2.0f * a[14] * r);
+  by_y = a[10] + 2.0f * a[12] * y + a[13] * (r + 2.0f * yy) + 4.0f * a[14] * r * y;
+  seen.x = pz_xyz(x * across, across + x * by_x, x * by_y);
+  seen.y.x = a[0] + y * (a[1] + a[3] * y + a[4] * xx + a[5] * yy + a[8] * r2) + a[2] * xx + a[6] * r2 + a[7] * r * yy;
+  seen.y.y = 2.0f * x * (a[2] + a[4] * y + 2.0f * a[6] * r + a[7] * yy + 2.0f * a[8] * y * r);
+  seen.y.z = a[1] + 2.0f * y * (a[3] + 2.0f * a[6] * r + a[7] * (r + yy)) + a[4] * xx + 3.0f * a[5] * yy +
+             a[8] * (r2 + 4.0f * yy * r);
   return seen;
 }
-PZ_FN float pz_determinant(pz_seen s) { return s.by_x.x * s.by_y.y - s.by_y.x * s.by_x.y; }
+PZ_FN float pz_determinant(pz_seen s) { return s.x.y * s.y.z - s.x.z * s.y.y; }
 /* A step of Newton's method towards the stop point whose image is p. */
 PZ_FN pz_point pz_newton_step(pz_seen s, pz_point p) {
-  float per = 1.0f / pz_determinant(s), x = p.x - s.at.x, y = p.y - s.at.y;
-  return pz_xy((s.by_y.y * x - s.by_y.x * y) * per, (s.by_x.x * y - s.by_x.y * x) * per);
+  float per = 1.0f / pz_determinant(s), x = p.x - s.x.x, y = p.y - s.y.x;
+  return pz_xy((s.y.z * x - s.x.z * y) * per, (s.x.y * y - s.y.y * x) * per);
+}
+/* The area that a sample of the iris represents. */
+PZ_FN float pz_iris_area(PZ_T pz_seen s, float scale) {
+  return PZ_AT(PZ_IRIS_AREA) * scale * scale * pz_abs(pz_determinant(s));
 }
 
 /* The interval of a line from a (0) to a + d (1) inside all edges of the iris, as from = x, to = y. */
 PZ_FN pz_point pz_cut(PZ_T pz_point a, pz_point d) {
-  int blades = pz_whole(PZ_P PZ_BLADES), list = pz_unit_edges(PZ_P blades);
+  int blades = pz_whole(PZ_P PZ_BLADES), edge = pz_unit_edges(PZ_P blades);
   float from = 0.0f, to = 1.0f;
-  for (int k = 0; k < blades; ++k) {
-    float nx = PZ_AT(list + 4 * k), ny = PZ_AT(list + 4 * k + 1), bend = PZ_AT(list + 4 * k + 2);
-    float outside = -pz_inside(PZ_P list, k, a.x, a.y), first, last = 2.0f, beyond = 2.0f;
-    float slope = nx * d.x + ny * d.y + 2.0f * bend * (a.x * d.x + a.y * d.y), square = bend * (d.x * d.x + d.y * d.y);
-    if (bend == 0.0f) {
-      if (slope > 0.0f) last = -outside / slope;
-      if (slope < 0.0f) beyond = -outside / slope;
-    } else {
-      float inner = slope * slope - 4.0f * square * outside;
-      float root = PZ_SQRT(inner > 0.0f ? inner : 0.0f), entering = root - slope;
-      if (inner >= 0.0f && -2.0f * outside / (slope + root) > 0.0f) last = -2.0f * outside / (slope + root);
-      if (inner >= 0.0f && entering > 0.0f) beyond = 2.0f * outside / entering;
-    }
+  for (int k = 0; k < blades; ++k, edge += 4) {
+    float bend = PZ_AT(edge + 2), outside = -pz_inside(PZ_P edge, a), first, last = 2.0f, beyond = 2.0f;
+    float square = bend * (d.x * d.x + d.y * d.y), slope = 2.0f * bend * (a.x * d.x + a.y * d.y);
+    slope += PZ_AT(edge) * d.x + PZ_AT(edge + 1) * d.y;
+    float inner = slope * slope - 4.0f * square * outside;
+    float root = PZ_SQRT(inner > 0.0f ? inner : 0.0f), leaving = root + slope, entering = root - slope;
+    if (inner >= 0.0f && outside * leaving < 0.0f) last = -2.0f * outside / leaving;
+    if (inner >= 0.0f && entering > 0.0f) beyond = 2.0f * outside / entering;
     first = outside > 0.0f ? beyond : 0.0f;
     to = last < to ? last : to;
     from = first > from ? first : from;
   }
   return pz_xy(from, to);
 }
-/* Clips the line from the middle of a pupil to a point of its edge by the iris. The line is straight in the pupil and
- * nearly straight at the stop: a second pass corrects it at the clipped end. */
-PZ_FN pz_point pz_clip(PZ_T pz_cell c, int k, float along, pz_point edge) {
-  int stop = pz_stop_at(PZ_P c), corners = c.two ? 90 : 36, step = c.two ? 8 : 4;
-  float scale = PZ_AT(stop + 1), look;
-  pz_point middle = pz_values(PZ_P c, stop + corners - step), a = pz_values(PZ_P c, stop + corners + step * k);
-  pz_point b = pz_values(PZ_P c, stop + corners + step * (k + 1));
-  pz_point begin = pz_to_film(c, middle), path, interval, straight, in_pupil, off;
-  path = pz_to_film(c, pz_xy(a.x + along * (b.x - a.x) - middle.x, a.y + along * (b.y - a.y) - middle.y));
-  begin = pz_xy(begin.x / scale, begin.y / scale);
-  path = pz_xy(path.x / scale, path.y / scale);
+/* The interval of squared relative radii inside the iris, on the line from the middle of a pupil to a place of its
+ * edge. The line is straight in the pupil and nearly straight at the stop: a second pass corrects it at the clipped
+ * end. */
+PZ_FN pz_point pz_clip(PZ_T pz_pupil p, pz_sector s) {
+  if (PZ_AT(PZ_STOP_SIZE) == 0.0f) return pz_xy(0.0f, 1.0f);
+  pz_cell stop = pz_stop_of(p);
+  int at = p.two ? 24 : 16, corner = at + 4 + 2 * s.k;
+  float scale = pz_between(PZ_P stop, 0), per = 1.0f / scale, look;
+  pz_point begin = pz_point_between(PZ_P stop, at), a = pz_point_between(PZ_P stop, corner);
+  pz_point b = pz_point_between(PZ_P stop, corner + 2), path, interval, straight, in_pupil, off;
+  path = pz_xy(a.x + s.along * (b.x - a.x) - begin.x, a.y + s.along * (b.y - a.y) - begin.y);
+  begin = pz_to_film(p, pz_xy(per * begin.x, per * begin.y));
+  path = pz_to_film(p, pz_xy(per * path.x, per * path.y));
   interval = pz_cut(PZ_P begin, path);
   look = interval.y > 0.25f ? interval.y : 0.25f;
-  straight = pz_to_grid(c, pz_xy(scale * (begin.x + look * path.x), scale * (begin.y + look * path.y)));
-  middle = pz_middle(PZ_P c);
-  in_pupil = pz_xy(middle.x + look * edge.x, middle.y + look * edge.y);
-  off = pz_to_film(c, pz_newton_step(pz_see(PZ_P c, straight), in_pupil));
-  path = pz_xy(path.x + off.x / (scale * look), path.y + off.y / (scale * look));
-  interval = pz_cut(PZ_P begin, path);
-  if (interval.x > interval.y) interval.x = interval.y;
-  return interval;
+  straight = pz_to_grid(p, pz_plus(begin, look, path));
+  in_pupil = pz_plus(pz_middle(PZ_P p.cell), look, s.edge);
+  off = pz_newton_step(pz_see(PZ_P p, scale * straight.x, scale * straight.y), in_pupil);
+  interval = pz_cut(PZ_P begin, pz_plus(path, per / look, pz_to_film(p, off)));
+  interval.x = interval.x < interval.y ? interval.x : interval.y;
+  return pz_xy(interval.x * interval.x, interval.y * interval.y);
 }
 
 /* A sample of a pupil: position in the pupil plane and area; area 0: there is no pupil. */
@@ -638,133 +668,83 @@ PZ_STRUCT(pz_pupil_sample) {
   pz_point at;
   float area;
 };
-PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
+PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_pupil p, float u, float v) {
   pz_pupil_sample result;
-  PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f;
-  int corrections = pz_whole(PZ_P PZ_CORRECTIONS), k;
-  float area, target, expected, behind, beyond, own_area, along, radius, fraction = 1.0f;
   result.at = pz_xy(0.0f, 0.0f);
   result.area = 0.0f;
-  if (!c.known) return result;
+  if (!p.known) return result;
   u = pz_clamped(u);
   v = pz_clamped(v);
-  if (bladed) {
-    int stop = pz_stop_at(PZ_P c);
-    if (PZ_AT(stop) > 0.0f) { /* uniform points of the iris */
-      float scale = PZ_AT(stop + 1);
-      pz_point p = pz_iris_point(PZ_P u, v);
-      pz_seen seen = pz_see(PZ_P c, pz_to_grid(c, pz_xy(scale * p.x, scale * p.y)));
-      result.at = pz_to_film(c, seen.at);
-      result.area = PZ_AT(PZ_IRIS_AREA) * scale * scale * pz_abs(pz_determinant(seen));
-      return result;
-    }
+  if (pz_samples_iris(PZ_P p)) {
+    float scale = pz_between(PZ_P pz_stop_of(p), 0);
+    pz_point stop = pz_to_grid(p, pz_iris_point(PZ_P u, v));
+    pz_seen seen = pz_see(PZ_P p, scale * stop.x, scale * stop.y);
+    result.at = pz_to_film(p, pz_xy(seen.x.x, seen.y.x));
+    result.area = pz_iris_area(PZ_P seen, scale);
+    return result;
   }
-  area = pz_whole_area(PZ_P c);
-  if (!(area > 0.0f)) return result;
   /* u starts at +y of the film; corners start at +y of the grid. */
-  if (!c.two) {
-    target = pz_clamped(pz_fraction(u - pz_turn_of(c.sine, c.cosine)));
-    expected = target * 64.0f;
+  if (p.two) {
+    u = 0.25f * (1.0f - p.cosine) + p.cosine * (0.5f * (1.0f - p.sine) + p.sine * u);
   } else {
-    float right = pz_area_before(PZ_P c, 32) / area;
-    float in_left, first, own_half, across = (1.0f - c.sine) / 2.0f + c.sine * u;
-    target = pz_clamped(pz_fraction((1.0f - c.cosine) / 2.0f * right + c.cosine * across));
-    in_left = target < right ? 0.0f : 1.0f;
-    first = in_left * right;
-    own_half = right + in_left * (1.0f - 2.0f * right);
-    expected = 32.0f * (in_left + (target - first) / (own_half > 0.0f ? own_half : 1.0f));
+    u -= pz_turn_of(p.sine, p.cosine);
   }
-  /* Sectors have nearly equal areas: the target lies in the expected sector or in a neighbour. */
-  expected -= corrections > 0 ? 0.0f : 0.5f;
-  expected = expected > 0.0f ? (expected < 63.0f ? expected : 63.0f) : 0.0f;
-  k = PZ_INT(expected);
-  target *= area;
-  for (int i = 0; i < corrections; ++i) {
-    PZ_BOOL back = target < pz_area_before(PZ_P c, k) && k > 0;
-    PZ_BOOL on = target > pz_area_before(PZ_P c, k + 1) && k < 63;
-    if (!back && !on) break;
-    k += back ? -1 : 1;
-  }
-  behind = target - pz_area_before(PZ_P c, k + 1);
-  beyond = 1.0f;
-  if (behind >= 0.0f && k < 63) {
-    k += 1;
-    beyond = 0.0f;
-  }
-  pz_sector own = pz_sector_of(PZ_P c, k);
-  own_area = 0.5f * pz_turn(own.a, own.b) * (1.0f - own.dark);
-  along = pz_clamped(behind / (own_area > 0.0f ? own_area : 1.0f) + beyond);
-  pz_point edge = pz_on_edge(own, along);
-  if (bladed) {
-    pz_point interval = pz_clip(PZ_P c, k, along, edge);
-    float first = pz_fraction_within(own, interval.x * interval.x);
-    fraction = pz_fraction_within(own, interval.y * interval.y) - first;
-    radius = PZ_SQRT(pz_squared_radius(own, first + v * fraction));
-  } else {
-    radius = PZ_SQRT(pz_squared_radius(own, v));
-  }
-  pz_point middle = pz_middle(PZ_P c);
-  result.at = pz_to_film(c, pz_xy(middle.x + radius * edge.x, middle.y + radius * edge.y));
-  result.area = area * fraction;
+  pz_sector s = pz_sector_after(PZ_P p.cell, pz_clamped(pz_fraction(u)));
+  pz_point interval = pz_clip(PZ_P p, s);
+  float first = pz_fraction_within(s, interval.x), fraction = pz_fraction_within(s, interval.y) - first;
+  result.at = pz_to_film(p, pz_in_polygon(PZ_P p.cell, s, first + v * fraction));
+  result.area = pz_area_of(s) * fraction;
   return result;
 }
+/* The area of a sample of the iris at a point of the pupil plane, in the frame of the grid. */
+PZ_FN float pz_iris_area_at(PZ_T pz_pupil p, pz_point q) {
+  float scale = pz_between(PZ_P pz_stop_of(p), 0), step2 = 0.0f, r2 = 0.0f;
+  pz_point stop = pz_xy(0.0f, 0.0f), unit;
+  for (int i = 0; i < 4; ++i) {
+    pz_point by = pz_newton_step(pz_see(PZ_P p, stop.x, stop.y), q);
+    step2 = by.x * by.x + by.y * by.y;
+    stop = pz_plus(stop, 1.0f, by);
+    r2 = stop.x * stop.x + stop.y * stop.y; /* stays near the rim: outside, the polynomials are not fitted */
+    if (r2 > 2.25f) stop = pz_xy(stop.x * 1.5f / PZ_SQRT(r2), stop.y * 1.5f / PZ_SQRT(r2));
+  }
+  unit = pz_to_film(p, pz_xy(stop.x / scale, stop.y / scale));
+  if (!(step2 < 1.0e-6f && unit.x * unit.x + unit.y * unit.y <= 1.000001f)) return 0.0f;
+  if (!pz_within(PZ_P pz_unit_edges(PZ_P pz_whole(PZ_P PZ_BLADES)), unit)) return 0.0f;
+  return pz_iris_area(PZ_P pz_see(PZ_P p, stop.x, stop.y), scale);
+}
 /* The area that the sample at a point of the pupil plane represents; 0: no sample has this position. */
-PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
-  PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f;
-  pz_point q, middle = pz_middle(PZ_P c), interval = pz_xy(0.0f, 1.0f);
-  int k = 0;
-  if (!c.known) return 0.0f;
-  q = pz_to_grid(c, pz_xy(x, y));
-  if (bladed && PZ_AT(pz_stop_at(PZ_P c)) > 0.0f) {
-    float scale = PZ_AT(pz_stop_at(PZ_P c) + 1), step2 = 0.0f, area;
-    int blades = pz_whole(PZ_P PZ_BLADES);
-    pz_point stop = pz_xy(0.0f, 0.0f);
-    for (int i = 0; i < 4; ++i) {
-      pz_point by = pz_newton_step(pz_see(PZ_P c, stop), q);
-      step2 = by.x * by.x + by.y * by.y;
-      stop = pz_xy(stop.x + by.x, stop.y + by.y);
-      float r2 = stop.x * stop.x + stop.y * stop.y; /* stays near the rim: outside, the polynomials are not fitted */
-      if (r2 > 2.25f) stop = pz_xy(stop.x * 1.5f / PZ_SQRT(r2), stop.y * 1.5f / PZ_SQRT(r2));
-    }
-    area = pz_abs(pz_determinant(pz_see(PZ_P c, stop)));
-    stop = pz_to_film(c, pz_xy(stop.x / scale, stop.y / scale));
-    if (!(step2 < 1.0e-6f && stop.x * stop.x + stop.y * stop.y <= 1.000001f)) return 0.0f;
-    for (int e = 0; e < blades; ++e) {
-      if (pz_inside(PZ_P pz_unit_edges(PZ_P blades), e, stop.x, stop.y) < 0.0f) return 0.0f;
-    }
-    return PZ_AT(PZ_IRIS_AREA) * scale * scale * area;
-  }
-  q = pz_xy(q.x - middle.x, q.y - middle.y);
-  pz_point first = pz_corner(PZ_P c, 0);
-  for (int step = 32; step > 0; step /= 2) {
-    if (pz_comes_before(first, pz_corner(PZ_P c, k + step), q)) k += step;
-  }
-  pz_sector own = pz_sector_of(PZ_P c, k);
-  float squared = pz_squared_at(own, q);
-  if (!(squared >= 0.0f)) return 0.0f;
-  if (bladed) {
-    float behind = pz_turn(own.a, q), before = pz_turn(q, own.b);
-    float along = behind + before > 0.0f ? behind / (behind + before) : 0.0f;
-    interval = pz_clip(PZ_P c, k, along, pz_on_edge(own, along));
-  }
-  interval = pz_xy(interval.x * interval.x, interval.y * interval.y);
-  if (!(squared <= interval.y && squared >= interval.x) || pz_is_dark(own, squared)) return 0.0f;
-  float fraction = bladed ? pz_fraction_within(own, interval.y) - pz_fraction_within(own, interval.x) : 1.0f;
-  return pz_whole_area(PZ_P c) * fraction;
+PZ_FN float pz_area_at(PZ_T pz_pupil p, pz_point q) {
+  if (!p.known) return 0.0f;
+  q = pz_to_grid(p, q);
+  if (pz_samples_iris(PZ_P p)) return pz_iris_area_at(PZ_P p, q);
+  q = pz_plus(q, -1.0f, pz_middle(PZ_P p.cell));
+  pz_sector s = pz_sector_towards(PZ_P p.cell, q);
+  pz_point interval = pz_clip(PZ_P p, s);
+  float squared = pz_squared_at(s, q);
+  if (!(squared >= interval.x && squared <= interval.y)) return 0.0f;
+  return pz_area_of(s) * (pz_fraction_within(s, interval.y) - pz_fraction_within(s, interval.x));
 }
 
 /* ---- Rays through the surfaces ---- */
 
-/* A ray on its way. z counts from the vertex of the surface, along the direction of travel; p is the direction times
- * the index of the medium, so that refraction needs no division. A follower is a derivative of position and p. */
+/* Rays on their way. z counts from the vertex of the surface, along the direction of travel; p is the direction times
+ * the index of the medium, so that refraction needs no division. ray[1] and ray[2] are derivatives of ray[0] by film x
+ * and y. */
 PZ_STRUCT(pz_follower) { pz_vector at, p; };
 PZ_STRUCT(pz_beam) {
-  pz_vector at, p;
-  pz_follower by_x, by_y;
+  pz_follower ray[3];
   float sense; /* 1: light travels towards +z */
   int fate;
 };
-/* Sag z of an asphere at a squared height u: z, slope = 2 dz/du, bend = d slope / du. */
+/* A polynomial without a constant term, and its derivatives: n coefficients from a position on. */
+PZ_FN pz_vector pz_series(PZ_T int at, int n, float v) {
+  pz_vector p = pz_xyz(0.0f, 0.0f, 0.0f);
+  for (int i = n - 1; i >= -1; --i) {
+    p = pz_xyz(p.x * v + (i >= 0 ? PZ_AT(at + i) : 0.0f), p.y * v + p.x, p.z * v + 2.0f * p.y);
+  }
+  return p;
+}
+/* Sag z of a surface at a squared height u: z, slope = 2 dz/du, bend = d slope / du. */
 PZ_STRUCT(pz_sag) {
   PZ_BOOL defined;
   float z, slope, bend;
@@ -781,67 +761,57 @@ PZ_FN pz_sag pz_sag_of(PZ_T int surface, float u) {
   if (asphere != 0) { /* even terms v, v^2, ... and odd terms rho v, rho v^2, ... with v = rho^2 = u / height^2 */
     float height2 = PZ_AT(asphere) * PZ_AT(asphere), v = u / height2, rho = PZ_SQRT(v);
     int even = pz_whole(PZ_P asphere + 2), odd = pz_whole(PZ_P asphere + 3);
-    float p = 0.0f, p1 = 0.0f, p2 = 0.0f, q = 0.0f, q1 = 0.0f, q2 = 0.0f;
-    for (int i = even - 1; i >= -1; --i) {
-      p2 = p2 * v + 2.0f * p1;
-      p1 = p1 * v + p;
-      p = p * v + (i >= 0 ? PZ_AT(asphere + 4 + i) : 0.0f);
-    }
-    for (int i = odd - 1; i >= -1; --i) {
-      q2 = q2 * v + 2.0f * q1;
-      q1 = q1 * v + q;
-      q = q * v + (i >= 0 ? PZ_AT(asphere + 4 + even + i) : 0.0f);
-    }
-    s.z += p + rho * q;
-    s.slope += 2.0f * (p1 + (rho > 1.0e-9f ? rho * q1 + 0.5f * q / rho : 0.0f)) / height2;
-    if (rho > 1.0e-9f) p2 += rho * q2 + q1 / rho - 0.25f * q / (rho * v);
-    s.bend += 2.0f * p2 / (height2 * height2);
+    pz_vector p = pz_series(PZ_P asphere + 4, even, v), q = pz_series(PZ_P asphere + 4 + even, odd, v);
+    s.z += p.x + rho * q.x;
+    s.slope += 2.0f * (p.y + (rho > 1.0e-9f ? rho * q.y + 0.5f * q.x / rho : 0.0f)) / height2;
+    if (rho > 1.0e-9f) p.z += rho * q.z + q.y / rho - 0.25f * q.x / (rho * v);
+    s.bend += 2.0f * p.z / (height2 * height2);
   }
   return s;
 }
 
 /* A point of a surface, where N = (-g.x, -g.y, g.z) is half the gradient of its equation. */
 PZ_STRUCT(pz_contact) {
-  pz_vector p; /* in front of the surface */
+  pz_vector at, p; /* the point; p in front of the surface */
   pz_vector g;
-  pz_vector c;                   /* N changes by -(c.x dx, c.y dy, c.z dz) ... */
-  float twist, ax, ay;           /* ... - twist (ax x, ay y, 0) (ax x dx + ay y dy) */
-  float q, nn, xi, xo, gamma, k; /* distance in units of p, N N, p N, p' N, (p' N - p N) / nn, n'^2 - n^2 */
+  pz_vector c;                     /* N changes by -(c.x dx, c.y dy, c.z dz) ... */
+  float twist, ax, ay;             /* ... - twist (ax x, ay y, 0) (ax x dx + ay y dy) */
+  float way, nn, xi, xo, gamma, k; /* way in units of p, N N, p N, p' N, (p' N - p N) / nn, n'^2 - n^2 */
 };
-/* The derivative of a ray behind a surface by the chain rule. at: the point of the surface */
-PZ_FN pz_follower pz_follow(pz_follower d, pz_vector at, pz_contact s, PZ_BOOL mirror) {
-  float on, gamma;
-  pz_vector n;
-  d.at = pz_along(d.at, s.q, d.p);
-  on = (s.g.x * d.at.x + s.g.y * d.at.y - s.g.z * d.at.z) / s.xi; /* the point stays on the surface */
-  d.at = pz_along(d.at, on, s.p);
-  float h = s.ax * at.x * d.at.x + s.ay * at.y * d.at.y;
-  n.x = s.c.x * d.at.x + s.twist * s.ax * at.x * h;
-  n.y = s.c.y * d.at.y + s.twist * s.ay * at.y * h;
-  n.z = s.c.z * d.at.z;
-  float xi = s.g.z * d.p.z - s.g.x * d.p.x - s.g.y * d.p.y - pz_dot(n, s.p);
-  gamma =
-      -s.gamma / s.xo * xi + 2.0f * (0.5f * s.k / s.xo - s.gamma) / s.nn * (s.g.x * n.x + s.g.y * n.y - s.g.z * n.z);
-  d.p.x = d.p.x - gamma * s.g.x - s.gamma * n.x;
-  d.p.y = d.p.y - gamma * s.g.y - s.gamma * n.y;
-  d.p.z = d.p.z + gamma * s.g.z - s.gamma * n.z;
-  if (mirror) d.at.z = -d.at.z;
-  if (mirror) d.p.z = -d.p.z;
+/* The derivative of a ray behind a surface by the chain rule. */
+PZ_FN pz_follower pz_follow(pz_follower d, pz_contact s) {
+  pz_vector n, normal = pz_xyz(-s.g.x, -s.g.y, s.g.z);
+  float h, xi, gamma;
+  d.at = pz_along(d.at, s.way, d.p);
+  d.at = pz_along(d.at, -pz_dot(normal, d.at) / s.xi, s.p); /* the point stays on the surface */
+  h = s.twist * (s.ax * s.at.x * d.at.x + s.ay * s.at.y * d.at.y);
+  n = pz_xyz(s.c.x * d.at.x + s.ax * s.at.x * h, s.c.y * d.at.y + s.ay * s.at.y * h, s.c.z * d.at.z);
+  xi = pz_dot(normal, d.p) - pz_dot(n, s.p);
+  gamma = -s.gamma / s.xo * xi - 2.0f * (0.5f * s.k / s.xo - s.gamma) / s.nn * pz_dot(normal, n);
+  d.p = pz_along(pz_along(d.p, gamma, normal), -s.gamma, n);
   return d;
 }
-
+/* Between the frame of the lens and of the way through it, or at a mirror. rays: 1, or 3 with derivatives, here and in
+ * the functions below, where compilers make a version for each; n: index, or its inverse */
+PZ_FN pz_beam pz_turned(pz_beam b, int rays, float sense, float n) {
+  for (int i = 0; i < rays; ++i) {
+    b.ray[i].at.z *= sense;
+    b.ray[i].p = pz_xyz(n * b.ray[i].p.x, n * b.ray[i].p.y, sense * n * b.ray[i].p.z);
+  }
+  return b;
+}
 PZ_FN pz_beam pz_stopped(pz_beam b, int fate) {
   b.fate = fate;
   return b;
 }
 /* One surface. n2: squared index in front of it; k: change of the squared index; clips: apertures clip the ray. */
-PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, PZ_BOOL follow) {
+PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, int rays) {
   float c = b.sense * PZ_AT(surface + 2), e = PZ_AT(surface + 3);
   float ax = PZ_AT(surface + 4), ay = PZ_AT(surface + 5), rim2 = PZ_AT(surface + 6), r2, d;
   float quadratic, facing, free, shift;
   int asphere = pz_whole(PZ_P surface + 10);
   PZ_BOOL mirror = PZ_AT(surface + 8) != 0.0f, sphere = asphere == 0 && e == 1.0f && ax * ay == 1.0f, found = PZ_TRUE;
-  pz_vector at = b.at, p = b.p;
+  pz_vector at = b.ray[0].at, p = b.ray[0].p;
   pz_contact s;
   /* Near the vertex the quadratic loses no digits: go to its plane, or to the nearest point if the ray is steep. */
   if (p.z * pz_abs(p.z) > 0.09f * n2) {
@@ -850,10 +820,6 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
   } else {
     shift = -(ax * at.x * p.x + ay * at.y * p.y + at.z * p.z) / (ax * p.x * p.x + ay * p.y * p.y + p.z * p.z);
     at = pz_along(at, shift, p);
-  }
-  if (follow) {
-    b.by_x.at = pz_along(b.by_x.at, shift, b.by_x.p);
-    b.by_y.at = pz_along(b.by_y.at, shift, b.by_y.p);
   }
   /* quadratic q^2 - 2 facing q + free = 0 for the base conic */
   quadratic = c * (ax * p.x * p.x + ay * p.y * p.y + e * p.z * p.z);
@@ -867,26 +833,26 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
   s.twist = 0.0f;
   if (asphere == 0) {
     found = d >= 0.0f;
-    s.q = facing >= 0.0f ? free / (facing + root) : (facing - root) / quadratic;
-    at = pz_along(at, s.q, p);
+    s.way = facing >= 0.0f ? free / (facing + root) : (facing - root) / quadratic;
+    at = pz_along(at, s.way, p);
     s.g = pz_xyz(c * ax * at.x, c * ay * at.y, 1.0f - c * e * at.z);
     s.c = pz_xyz(c * ax, c * ay, c * e);
     s.xi = root;
-    found = found && s.g.z > 0.0f && pz_finite(s.q);
+    found = found && s.g.z > 0.0f && pz_finite(s.way);
   } else {
     float size = PZ_AT(asphere) + ax * pz_abs(at.x) + ay * pz_abs(at.y) + pz_abs(at.z), u;
     pz_sag sag;
     PZ_BOOL settled = PZ_FALSE;
-    s.q = d > 0.0f && facing > 0.0f ? free / (facing + root) : 0.0f;
+    s.way = d > 0.0f && facing > 0.0f ? free / (facing + root) : 0.0f;
     for (int i = 0; i < 12 && !settled; ++i) { /* Newton's method */
-      pz_vector on = pz_along(at, s.q, p);
+      pz_vector on = pz_along(at, s.way, p);
       sag = pz_sag_of(PZ_P surface, ax * on.x * on.x + ay * on.y * on.y);
       float above = on.z - b.sense * sag.z;
       s.xi = p.z - b.sense * sag.slope * (ax * on.x * p.x + ay * on.y * p.y);
-      settled = sag.defined && pz_abs(above) <= 2.4e-7f * (size + pz_abs(s.q));
-      s.q -= above / s.xi;
+      settled = sag.defined && pz_abs(above) <= 2.4e-7f * (size + pz_abs(s.way));
+      s.way -= above / s.xi;
     }
-    at = pz_along(at, s.q, p);
+    at = pz_along(at, s.way, p);
     u = ax * at.x * at.x + ay * at.y * at.y;
     s.g = pz_xyz(b.sense * sag.slope * ax * at.x, b.sense * sag.slope * ay * at.y, 1.0f);
     s.c = pz_xyz(b.sense * sag.slope * ax, b.sense * sag.slope * ay, 0.0f);
@@ -894,15 +860,12 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
     if (clips && !(u <= PZ_AT(asphere + 1))) return pz_stopped(b, 3);
     found = settled && s.xi > 0.0f;
   }
-  b.at = at;
+  b.ray[0].at = at;
   r2 = at.x * at.x + at.y * at.y;
   if (!found) return pz_stopped(b, 1);
   if (clips && !(r2 <= rim2 && r2 >= PZ_AT(surface + 7))) return pz_stopped(b, 3);
   if (clips && PZ_AT(surface + 9) != 0.0f) {
-    int blades = pz_whole(PZ_P PZ_BLADES), edges = pz_whole(PZ_P PZ_EDGES);
-    for (int i = 0; i < blades; ++i) {
-      if (pz_inside(PZ_P edges, i, at.x, at.y) < 0.0f) return pz_stopped(b, 3);
-    }
+    if (!pz_within(PZ_P pz_whole(PZ_P PZ_EDGES), pz_xy(at.x, at.y))) return pz_stopped(b, 3);
   }
   s.nn = sphere ? 1.0f : pz_dot(s.g, s.g);
   s.k = mirror ? 0.0f : k;
@@ -918,80 +881,71 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
     s.xo = PZ_SQRT(d);
     s.gamma = k / (s.xo + s.xi);
   }
-  b.p = pz_xyz(p.x - s.gamma * s.g.x, p.y - s.gamma * s.g.y, p.z + s.gamma * s.g.z);
-  if (follow) {
-    b.by_x = pz_follow(b.by_x, at, s, mirror);
-    b.by_y = pz_follow(b.by_y, at, s, mirror);
-  }
-  if (mirror) {
-    b.at.z = -b.at.z;
-    b.p.z = -b.p.z;
-    b.sense = -b.sense;
-  }
+  b.ray[0].p = pz_xyz(p.x - s.gamma * s.g.x, p.y - s.gamma * s.g.y, p.z + s.gamma * s.g.z);
+  s.at = at;
+  s.way += shift;
+  for (int i = 1; i < rays; ++i) b.ray[i] = pz_follow(b.ray[i], s);
+  if (mirror) b = pz_turned(b, rays, -1.0f, 1.0f);
+  if (mirror) b.sense = -b.sense;
   return b;
 }
 
-/* Traces a ray in the lens frame through all surfaces, to the film or to the scene. follow: with derivatives. */
-PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL clips, PZ_BOOL follow) {
+/* Traces a ray in the lens frame through all surfaces, to the film or to the scene. */
+PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL clips, int rays) {
   int count = pz_whole(PZ_P PZ_SURFACE_COUNT), list = pz_whole(PZ_P PZ_SURFACES);
-  int odd = pz_whole(PZ_P PZ_MIRRORS) % 2, surface = list + (to_film ? 0 : count - 1) * PZ_SURFACE_SIZE;
-  float n = PZ_SQRT(pz_number(PZ_P light, to_film ? 4 : 4 + count)), length, scale;
-  b.sense = to_film || odd != 0 ? 1.0f : -1.0f;
+  int surface = list + (to_film ? 0 : count - 1) * PZ_SURFACE_SIZE;
+  float n2 = pz_number(PZ_P light, to_film ? 4 : 4 + count), length;
+  b.sense = to_film || pz_whole(PZ_P PZ_MIRRORS) % 2 != 0 ? 1.0f : -1.0f;
   b.fate = 0;
-  b.at.z = b.sense * (b.at.z - PZ_AT(surface));
-  b.p = pz_xyz(n * b.p.x, n * b.p.y, b.sense * n * b.p.z);
-  if (follow) {
-    b.by_x.at.z *= b.sense;
-    b.by_y.at.z *= b.sense;
-    b.by_x.p = pz_xyz(n * b.by_x.p.x, n * b.by_x.p.y, b.sense * n * b.by_x.p.z);
-    b.by_y.p = pz_xyz(n * b.by_y.p.x, n * b.by_y.p.y, b.sense * n * b.by_y.p.z);
-  }
+  b.ray[0].at.z -= PZ_AT(surface);
+  b = pz_turned(b, rays, b.sense, PZ_SQRT(n2));
   for (int j = 0; j < count; ++j) {
     int i = to_film ? j : count - 1 - j;
-    float n2 = pz_number(PZ_P light, to_film ? 4 + i : 5 + i), k = pz_number(PZ_P light, 5 + count + i);
+    float k = pz_number(PZ_P light, 5 + count + i);
     surface = list + i * PZ_SURFACE_SIZE;
-    if (j > 0) {
-      b.at.z -= b.sense * (to_film ? PZ_AT(surface - PZ_SURFACE_SIZE + 1) : -PZ_AT(surface + 1));
-      if (j % 16 == 0) {
-        scale = 1.5f - 0.5f * pz_dot(b.p, b.p) / n2;
-        b.p = pz_xyz(scale * b.p.x, scale * b.p.y, scale * b.p.z);
-      }
-    }
-    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, clips, follow);
+    if (j > 0) b.ray[0].at.z -= b.sense * (to_film ? PZ_AT(surface - PZ_SURFACE_SIZE + 1) : -PZ_AT(surface + 1));
+    if (j % 4 == 0) b.ray[0].p = pz_times(1.5f - 0.5f * pz_dot(b.ray[0].p, b.ray[0].p) / n2, b.ray[0].p);
+    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, clips, rays);
     if (b.fate != 0) return b;
+    n2 = pz_number(PZ_P light, to_film ? 5 + i : 4 + i);
   }
-  n = PZ_SQRT(pz_number(PZ_P light, to_film ? 4 + count : 4));
-  b.at.z = b.sense * b.at.z + PZ_AT(surface);
-  length = pz_dot(b.p, b.p) / (n * n);
-  scale = (1.5f - 0.5f * length) / n;
-  b.p = pz_xyz(scale * b.p.x, scale * b.p.y, b.sense * scale * b.p.z);
+  length = pz_dot(b.ray[0].p, b.ray[0].p) / n2;
   if (!(pz_abs(length - 1.0f) < 1.2e-5f)) b.fate = 1;
-  if (follow) {
-    b.by_x.at.z *= b.sense;
-    b.by_y.at.z *= b.sense;
-    b.by_x.p = pz_xyz(b.by_x.p.x / n, b.by_x.p.y / n, b.sense * b.by_x.p.z / n);
-    b.by_y.p = pz_xyz(b.by_y.p.x / n, b.by_y.p.y / n, b.sense * b.by_y.p.z / n);
-  }
+  b = pz_turned(b, rays, b.sense, 1.0f / PZ_SQRT(n2));
+  b.ray[0].p = pz_times(1.5f - 0.5f * length, b.ray[0].p);
+  b.ray[0].at.z += PZ_AT(surface);
   return b;
 }
 
 /* ---- Rays by polynomials ---- */
 
-/* A ray in object space as two vectors s and o that turn with it about the axis: s is the stereographic projection of
- * the direction, o the foot of the perpendicular from the reference point. Each is A f + B p, with f and p the film
- * and pupil point, scaled, and polynomials A and B. */
-PZ_STRUCT(pz_chart) { float sx, sy, ox, oy; };
-PZ_FN pz_chart pz_sums(PZ_T int w, float fx, float fy, float px, float py) {
+/* Film and pupil point, scaled by the domain: film x, y, pupil x, y. Or a ray in object space as two vectors that turn
+ * with it about the axis: the stereographic projection of the direction, and the foot of the perpendicular from the
+ * reference point. Each is A f + B p, with f and p the film and pupil point, scaled, and polynomials A and B. */
+PZ_STRUCT(pz_four) { float v[4]; };
+PZ_FN pz_four pz_in_domain(PZ_T pz_point film, pz_point pupil) {
+  pz_four x;
+  x.v[0] = film.x / PZ_AT(PZ_DOMAIN_FILM);
+  x.v[1] = film.y / PZ_AT(PZ_DOMAIN_FILM);
+  x.v[2] = (pupil.x - PZ_AT(PZ_DOMAIN_SHIFT_X) * film.x) / PZ_AT(PZ_DOMAIN_RADIUS_X);
+  x.v[3] = (pupil.y - PZ_AT(PZ_DOMAIN_SHIFT_Y) * film.y) / PZ_AT(PZ_DOMAIN_RADIUS_Y);
+  return x;
+}
+PZ_FN int pz_fate_in_domain(pz_four x) {
+  float film2 = x.v[0] * x.v[0] + x.v[1] * x.v[1], pupil2 = x.v[2] * x.v[2] + x.v[3] * x.v[3];
+  return film2 <= 1.00001f && pupil2 <= 1.00001f ? 0 : 5;
+}
+PZ_FN pz_four pz_sums(PZ_T int w, pz_four x) {
   int n = (pz_whole(PZ_P PZ_DEGREE) - 1) / 2, list = pz_whole(PZ_P PZ_TERMS), at;
   int of_three = (n + 1) * (n + 2) * (n + 3) / 6, of_four = (n + 1) * (n + 2) * (n + 3) * (n + 2) / 12;
   PZ_BOOL two = PZ_AT(PZ_PUPIL_DIMENSIONS) == 2.0f;
   int terms = two ? of_four : of_three, stride = two ? 2 * terms : terms;
-  pz_chart chart;
+  pz_four sums;
   float a[4];
   /* Along x and y: f and p along this axis, g and q along the other. Lenses of revolution have the same polynomials
    * of f f, f p and p p for both axes. */
   for (int axis = 0; axis < 2; ++axis) {
-    float f = axis == 0 ? fx : fy, p = axis == 0 ? px : py, g = axis == 0 ? fy : fx, q = axis == 0 ? py : px;
+    float f = x.v[axis], g = x.v[1 - axis], p = x.v[2 + axis], q = x.v[3 - axis];
     float u = two ? f * f : f * f + g * g, v = two ? p * p : f * p + g * q, r = two ? g * g : p * p + q * q;
     at = list + (two ? terms * (8 * w + axis) : 4 * terms * w);
     for (int m = 0; m < 4; ++m) a[m] = 0.0f;
@@ -1015,24 +969,19 @@ PZ_FN pz_chart pz_sums(PZ_T int w, float fx, float fy, float px, float py) {
         by_q *= q * q;
       }
     }
-    if (axis == 0) chart.sx = a[0] * f + a[1] * p;
-    if (axis == 0) chart.ox = a[2] * f + a[3] * p;
-    if (axis == 1) chart.sy = a[0] * f + a[1] * p;
-    if (axis == 1) chart.oy = a[2] * f + a[3] * p;
+    sums.v[axis] = a[0] * f + a[1] * p;
+    sums.v[2 + axis] = a[2] * f + a[3] * p;
   }
-  return chart;
+  return sums;
 }
 PZ_FN pz_beam pz_by_polynomial(PZ_T int w, pz_point film, pz_point pupil) {
   pz_beam b;
-  float fx = film.x / PZ_AT(PZ_DOMAIN_FILM), fy = film.y / PZ_AT(PZ_DOMAIN_FILM);
-  float px = (pupil.x - PZ_AT(PZ_DOMAIN_SHIFT_X) * film.x) / PZ_AT(PZ_DOMAIN_RADIUS_X);
-  float py = (pupil.y - PZ_AT(PZ_DOMAIN_SHIFT_Y) * film.y) / PZ_AT(PZ_DOMAIN_RADIUS_Y);
-  b.fate = fx * fx + fy * fy <= 1.00001f && px * px + py * py <= 1.00001f ? 0 : 5;
-  pz_chart c = pz_sums(PZ_P w, fx, fy, px, py);
-  float square = c.sx * c.sx + c.sy * c.sy, twice = 2.0f / (square + 1.0f);
-  float along = twice * (c.sx * c.ox + c.sy * c.oy);
-  b.at = pz_xyz(c.ox - c.sx * along, c.oy - c.sy * along, along + PZ_AT(PZ_REFERENCE_Z));
-  b.p = pz_xyz(twice * c.sx, twice * c.sy, twice * (square - 1.0f) / 2.0f);
+  pz_four x = pz_in_domain(PZ_P film, pupil), c = pz_sums(PZ_P w, x);
+  float square = c.v[0] * c.v[0] + c.v[1] * c.v[1], twice = 2.0f / (square + 1.0f);
+  float along = twice * (c.v[0] * c.v[2] + c.v[1] * c.v[3]);
+  b.fate = pz_fate_in_domain(x);
+  b.ray[0].at = pz_xyz(c.v[2] - c.v[0] * along, c.v[3] - c.v[1] * along, along + PZ_AT(PZ_REFERENCE_Z));
+  b.ray[0].p = pz_xyz(twice * c.v[0], twice * c.v[1], twice * (square - 1.0f) / 2.0f);
   return b;
 }
 
@@ -1040,21 +989,23 @@ PZ_FN pz_beam pz_by_polynomial(PZ_T int w, pz_point film, pz_point pupil) {
 
 /* Distance along a ray towards the scene to the front of the lens: a sphere through the front vertex, or a plane. */
 PZ_FN float pz_to_front(PZ_T pz_vector o, pz_vector d) {
-  float c = PZ_AT(PZ_FRONT_CURVATURE), z = o.z - PZ_AT(PZ_FRONT_Z);
-  float e = c * (o.x * o.x + o.y * o.y + z * z) - 2.0f * z, along = o.x * d.x + o.y * d.y + z * d.z;
-  float b = d.z - c * along, square = b * b - c * e;
+  float c = PZ_AT(PZ_FRONT_CURVATURE), along, b, square;
+  o.z -= PZ_AT(PZ_FRONT_Z);
+  along = pz_dot(o, d);
+  b = d.z - c * along;
+  square = b * b - c * (c * pz_dot(o, o) - 2.0f * o.z);
   if (square > 0.0f && (b < 0.0f || c != 0.0f)) {
     float root = PZ_SQRT(square);
-    return b < 0.0f ? e / (b - root) : (b + root) / c;
+    return b < 0.0f ? (c * pz_dot(o, o) - 2.0f * o.z) / (b - root) : (b + root) / c;
   }
-  return d.z < 0.0f ? -z / d.z : -along;
+  return d.z < 0.0f ? -o.z / d.z : -along;
 }
 /* A film point and a point of its pupil: before the ray is known. */
 PZ_STRUCT(pz_start) {
   pz_light light;
   pz_point film;
-  pz_cell cell;
-  pz_pupil_sample pupil;
+  pz_pupil pupil;
+  pz_pupil_sample to;
   int fate;
 };
 PZ_FN pz_start pz_start_of(PZ_T float x, float y, float u, float v, float nm) {
@@ -1062,43 +1013,70 @@ PZ_FN pz_start pz_start_of(PZ_T float x, float y, float u, float v, float nm) {
   float sound = (u + v) * 0.0f; /* NaN unless u and v are finite */
   s.light = pz_light_of(PZ_P nm);
   s.film = pz_xy(x, y);
-  s.fate = 0;
-  if (!pz_on_film(PZ_P x, y)) {
-    s.fate = 6;
-  } else if (!(sound >= 0.0f)) {
-    s.fate = 3;
-  } else if (s.light.nearest < 0 || (PZ_AT(PZ_RAYS) == 1.0f && !s.light.compiled)) {
-    s.fate = 8;
-  }
+  s.fate = !pz_on_film(PZ_P s.film) ? 6 : !(sound >= 0.0f) ? 3 : pz_has_light(PZ_P s.light) ? 0 : 8;
   if (s.fate != 0) return s;
-  s.cell = pz_find_cell(PZ_P x, y, s.light.nearest);
-  s.pupil = pz_sample_pupil(PZ_P s.cell, u, v);
-  if (!(s.pupil.area > 0.0f)) s.fate = 3;
+  s.pupil = pz_find_pupil(PZ_P x, y, s.light.nearest);
+  s.to = pz_sample_pupil(PZ_P s.pupil, u, v);
+  s.fate = s.to.area > 0.0f ? 0 : 3;
   return s;
 }
-/* The derivatives of the middle of a pupil by the film point. */
+/* The derivatives of the middle of a pupil by the film point: of x and y, as y and z of two vectors. */
 PZ_FN pz_seen pz_motion(PZ_T pz_start s) {
+  pz_pupil p = s.pupil;
   pz_seen by;
-  float per_mm = PZ_AT(PZ_ROWS_PER_MM), sine = s.cell.sine, cosine = s.cell.cosine;
-  int b = s.cell.begin;
-  by.at = s.film;
-  if (!s.cell.two) {
-    float r = PZ_SQRT(s.film.x * s.film.x + s.film.y * s.film.y), along = PZ_AT(b + 3) * per_mm;
-    float across = r * per_mm >= 1.0f ? pz_value(PZ_P s.cell, b + 2) / r : along;
-    by.by_x = pz_xy(along * sine * sine + across * cosine * cosine, (along - across) * sine * cosine);
-    by.by_y = pz_xy(by.by_x.y, along * cosine * cosine + across * sine * sine);
+  float per_mm = PZ_AT(PZ_ROWS_PER_MM), sine = p.sine, cosine = p.cosine, sign = sine * cosine;
+  pz_point by_t = pz_step_of_middle(PZ_P p.cell, PZ_TRUE), by_s;
+  if (!p.two) {
+    float r = PZ_SQRT(s.film.x * s.film.x + s.film.y * s.film.y), along = by_t.y * per_mm;
+    float across = r * per_mm >= 1.0f ? pz_middle(PZ_P p.cell).y / r : along;
+    by.x = pz_xyz(0.0f, along * sine * sine + across * cosine * cosine, (along - across) * sign);
+    by.y = pz_xyz(0.0f, by.x.z, along * cosine * cosine + across * sine * sine);
   } else {
-    int columns = pz_whole(PZ_P PZ_PUPIL_COLUMNS), rows = pz_whole(PZ_P PZ_PUPIL_ROWS);
-    int half_width = pz_whole(PZ_P PZ_HALF_WIDTHS) + s.cell.cell / columns % rows;
-    float t = s.cell.t, v = s.cell.s, change = PZ_AT(half_width + 1) - PZ_AT(half_width);
-    float width = PZ_AT(half_width) + v * change, per = width > 0.0f ? 1.0f / width : 0.0f;
-    float t_by_x = PZ_FLOAT(columns) * per, t_by_y = -(PZ_FLOAT(s.cell.cell % columns) + t) * change * per_mm * per;
-    float x_by_t = PZ_AT(b + 1) + v * PZ_AT(b + 3), x_by_s = PZ_AT(b + 2) + t * PZ_AT(b + 3);
-    float y_by_t = PZ_AT(b + 5) + v * PZ_AT(b + 7), y_by_s = PZ_AT(b + 6) + t * PZ_AT(b + 7);
-    by.by_x = pz_xy(x_by_t * t_by_x, sine * cosine * y_by_t * t_by_x);
-    by.by_y = pz_xy(sine * cosine * (x_by_s * per_mm + x_by_t * t_by_y), y_by_s * per_mm + y_by_t * t_by_y);
+    by_s = pz_step_of_middle(PZ_P p.cell, PZ_FALSE);
+    by.x = pz_xyz(0.0f, by_t.x * p.t_by_x, sign * (by_s.x * per_mm + by_t.x * p.t_by_y));
+    by.y = pz_xyz(0.0f, sign * by_t.y * p.t_by_x, by_s.y * per_mm + by_t.y * p.t_by_y);
   }
   return by;
+}
+/* The start of a ray moves with a film point by df, and so its pupil point by dp: the derivative of the ray. Rays by
+ * polynomials: by central differences; others: of pupil - film, less its part along the ray p. */
+PZ_FN pz_follower pz_moved(PZ_T pz_start s, pz_vector p, pz_point df, pz_point dp) {
+  pz_follower by;
+  if (PZ_AT(PZ_RAYS) == 1.0f) {
+    float h = 0.004f * PZ_AT(PZ_DOMAIN_FILM);
+    int w = s.light.nearest;
+    pz_beam more = pz_by_polynomial(PZ_P w, pz_plus(s.film, h, df), pz_plus(s.to.at, h, dp));
+    pz_beam less = pz_by_polynomial(PZ_P w, pz_plus(s.film, -h, df), pz_plus(s.to.at, -h, dp));
+    by.at = pz_times(0.5f / h, pz_along(more.ray[0].at, -1.0f, less.ray[0].at));
+    by.p = pz_times(0.5f / h, pz_along(more.ray[0].p, -1.0f, less.ray[0].p));
+  } else {
+    float per = p.z / (PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z));
+    by.at = pz_xyz(dp.x, dp.y, 0.0f);
+    by.p = pz_xyz((dp.x - df.x) * per, (dp.y - df.y) * per, 0.0f);
+    by.p = pz_along(by.p, -pz_dot(by.p, p), p);
+  }
+  return by;
+}
+/* The ray of a start, in the plane where its model ends. rays: 1, or 3 with derivatives */
+PZ_FN pz_beam pz_leave(PZ_T pz_start s, int rays) {
+  pz_beam b;
+  PZ_BOOL exact = PZ_AT(PZ_RAYS) == 0.0f;
+  if (exact) {
+    pz_vector path = pz_xyz(s.to.at.x - s.film.x, s.to.at.y - s.film.y, PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z));
+    /* Light leaves the lens towards -z, or towards +z after an odd number of mirrors. */
+    PZ_BOOL ahead = (path.z < 0.0f) == (pz_whole(PZ_P PZ_MIRRORS) % 2 == 0);
+    b.ray[0].at = pz_xyz(s.to.at.x, s.to.at.y, PZ_AT(PZ_PUPIL_Z));
+    b.ray[0].p = pz_times((ahead ? 1.0f : -1.0f) / PZ_SQRT(pz_dot(path, path)), path);
+  } else {
+    b = pz_by_polynomial(PZ_P s.light.nearest, s.film, s.to.at);
+  }
+  if (rays > 1) {
+    pz_seen pupil = pz_motion(PZ_P s);
+    b.ray[1] = pz_moved(PZ_P s, b.ray[0].p, pz_xy(1.0f, 0.0f), pz_xy(pupil.x.y, pupil.y.y));
+    b.ray[2] = pz_moved(PZ_P s, b.ray[0].p, pz_xy(0.0f, 1.0f), pz_xy(pupil.x.z, pupil.y.z));
+  }
+  if (exact) b = pz_trace(PZ_P b, s.light, PZ_FALSE, PZ_TRUE, rays);
+  return b;
 }
 PZ_FN pz_ray pz_lost(int fate) {
   pz_ray ray;
@@ -1109,67 +1087,16 @@ PZ_FN pz_ray pz_lost(int fate) {
   ray.fate = fate;
   return ray;
 }
-PZ_FN pz_vector pz_difference(pz_vector a, pz_vector b, float per) {
-  return pz_xyz((a.x - b.x) * per, (a.y - b.y) * per, (a.z - b.z) * per);
-}
-/* The ray of a start, in the plane where its model ends, with derivatives if follow is true. */
-PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
-  pz_beam b;
-  pz_point pupil = s.pupil.at;
-  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), sign, per, x, y;
-  if (PZ_AT(PZ_RAYS) == 1.0f) {
-    b = pz_by_polynomial(PZ_P s.light.nearest, s.film, pupil);
-    if (follow) { /* central differences */
-      pz_seen motion = pz_motion(PZ_P s);
-      float h = 0.004f * PZ_AT(PZ_DOMAIN_FILM);
-      for (int axis = 0; axis < 2; ++axis) {
-        pz_point df = axis == 0 ? pz_xy(h, 0.0f) : pz_xy(0.0f, h), dp = axis == 0 ? motion.by_x : motion.by_y;
-        dp = pz_xy(h * dp.x, h * dp.y);
-        pz_beam more = pz_by_polynomial(PZ_P s.light.nearest, pz_xy(s.film.x + df.x, s.film.y + df.y),
-                                        pz_xy(pupil.x + dp.x, pupil.y + dp.y));
-        pz_beam less = pz_by_polynomial(PZ_P s.light.nearest, pz_xy(s.film.x - df.x, s.film.y - df.y),
-                                        pz_xy(pupil.x - dp.x, pupil.y - dp.y));
-        pz_follower by;
-        by.at = pz_difference(more.at, less.at, 0.5f / h);
-        by.p = pz_difference(more.p, less.p, 0.5f / h);
-        if (axis == 0) b.by_x = by;
-        if (axis == 1) b.by_y = by;
-      }
-    }
-    return b;
-  }
-  x = pupil.x - s.film.x;
-  y = pupil.y - s.film.y;
-  /* Light leaves the lens towards -z, or towards +z after an odd number of mirrors. */
-  sign = pz_whole(PZ_P PZ_MIRRORS) % 2 == 0 ? -1.0f : 1.0f;
-  per = (depth < 0.0f ? -sign : sign) / PZ_SQRT(x * x + y * y + depth * depth);
-  b.at = pz_xyz(pupil.x, pupil.y, PZ_AT(PZ_PUPIL_Z));
-  b.p = pz_xyz(x * per, y * per, depth * per);
-  if (follow) { /* of pupil - film, less its part along the ray */
-    pz_seen motion = pz_motion(PZ_P s);
-    b.by_x.at = pz_xyz(motion.by_x.x, motion.by_x.y, 0.0f);
-    b.by_y.at = pz_xyz(motion.by_y.x, motion.by_y.y, 0.0f);
-    b.by_x.p = pz_xyz((motion.by_x.x - 1.0f) * per, motion.by_x.y * per, 0.0f);
-    b.by_y.p = pz_xyz(motion.by_y.x * per, (motion.by_y.y - 1.0f) * per, 0.0f);
-    float along = pz_dot(b.by_x.p, b.p);
-    b.by_x.p = pz_along(b.by_x.p, -along, b.p);
-    along = pz_dot(b.by_y.p, b.p);
-    b.by_y.p = pz_along(b.by_y.p, -along, b.p);
-  }
-  return pz_trace(PZ_P b, s.light, PZ_FALSE, PZ_TRUE, follow);
-}
 /* The camera ray of a start and its beam: with weight, and from the front of the lens. */
 PZ_FN pz_ray pz_ray_of(PZ_T pz_start s, pz_beam b) {
   pz_ray ray = pz_lost(b.fate);
-  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, factor;
-  ray.pdf_pupil = 1.0f / s.pupil.area;
+  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x = s.to.at.x - s.film.x, y = s.to.at.y - s.film.y;
+  float factor = depth / (x * x + y * y + depth * depth);
+  ray.pdf_pupil = 1.0f / s.to.area;
   if (b.fate != 0) return ray;
-  x = s.pupil.at.x - s.film.x;
-  y = s.pupil.at.y - s.film.y;
-  factor = depth / (x * x + y * y + depth * depth);
-  ray.origin = b.at;
-  ray.direction = b.p;
-  ray.weight = pz_number(PZ_P s.light, 0) * s.pupil.area * factor * factor;
+  ray.origin = b.ray[0].at;
+  ray.direction = b.ray[0].p;
+  ray.weight = pz_number(PZ_P s.light, 0) * s.to.area * factor * factor;
   if (PZ_AT(PZ_RAYS) == 1.0f || PZ_AT(PZ_FRONT_FIRST) == 0.0f) {
     ray.origin = pz_along(ray.origin, pz_to_front(PZ_P ray.origin, ray.direction), ray.direction);
   }
@@ -1179,7 +1106,7 @@ PZ_FN pz_ray pz_ray_of(PZ_T pz_start s, pz_beam b) {
 PZ_FN pz_ray pz_sample(PZ_T float film_x, float film_y, float u, float v, float nm) {
   pz_start s = pz_start_of(PZ_P film_x, film_y, u, v, nm);
   if (s.fate != 0) return pz_lost(s.fate);
-  return pz_ray_of(PZ_P s, pz_leave(PZ_P s, PZ_FALSE));
+  return pz_ray_of(PZ_P s, pz_leave(PZ_P s, 1));
 }
 /* The same ray with its derivatives by the film point, for texture filters. The offset of the pupil point from the
  * middle of the pupil is constant. */
@@ -1189,23 +1116,20 @@ PZ_FN pz_ray_differential pz_sample_differential(PZ_T float film_x, float film_y
   result.ray = pz_lost(s.fate);
   result.origin_by_x = result.direction_by_x = result.origin_by_y = result.direction_by_y = pz_xyz(0.0f, 0.0f, 0.0f);
   if (s.fate != 0) return result;
-  pz_beam b = pz_leave(PZ_P s, PZ_TRUE);
+  pz_beam b = pz_leave(PZ_P s, 3);
   result.ray = pz_ray_of(PZ_P s, b);
-  if (b.fate != 0) return result;
   /* rays that graze a surface have no finite derivatives */
-  if (!pz_finite(pz_dot(b.by_x.p, b.by_x.p) + pz_dot(b.by_y.p, b.by_y.p))) return result;
-  result.direction_by_x = b.by_x.p;
-  result.direction_by_y = b.by_y.p;
+  if (b.fate != 0 || !pz_finite(pz_dot(b.ray[1].p, b.ray[1].p) + pz_dot(b.ray[2].p, b.ray[2].p))) return result;
+  result.direction_by_x = b.ray[1].p;
+  result.direction_by_y = b.ray[2].p;
   /* from b.at to the front, on which origins stay: N (by + t d_by + t_by d) = 0 */
-  {
-    pz_vector o = result.ray.origin, d = result.ray.direction, n;
-    float c = PZ_AT(PZ_FRONT_CURVATURE), t = pz_dot(pz_difference(o, b.at, 1.0f), d), per;
-    pz_vector x = pz_along(b.by_x.at, t, b.by_x.p), y = pz_along(b.by_y.at, t, b.by_y.p);
-    n = pz_xyz(c * o.x, c * o.y, c * (o.z - PZ_AT(PZ_FRONT_Z)) - 1.0f);
-    per = pz_dot(n, d);
-    result.origin_by_x = pz_along(x, -pz_dot(n, x) / per, d);
-    result.origin_by_y = pz_along(y, -pz_dot(n, y) / per, d);
-  }
+  pz_vector o = result.ray.origin, d = result.ray.direction, n;
+  float c = PZ_AT(PZ_FRONT_CURVATURE), t = pz_dot(pz_along(o, -1.0f, b.ray[0].at), d), per;
+  pz_vector x = pz_along(b.ray[1].at, t, b.ray[1].p), y = pz_along(b.ray[2].at, t, b.ray[2].p);
+  n = pz_xyz(c * o.x, c * o.y, c * (o.z - PZ_AT(PZ_FRONT_Z)) - 1.0f);
+  per = pz_dot(n, d);
+  result.origin_by_x = pz_along(x, -pz_dot(n, x) / per, d);
+  result.origin_by_y = pz_along(y, -pz_dot(n, y) / per, d);
   return result;
 }
 
@@ -1217,34 +1141,23 @@ PZ_STRUCT(pz_path) {
   int fate;
 };
 /* The film and pupil point whose ray by polynomials has the line of a ray, by Newton's method from a point nearby. */
-PZ_FN pz_path pz_corrected(PZ_T pz_path path, pz_vector origin, pz_vector direction, int w) {
-  float x[4], a[20], z = origin.z - PZ_AT(PZ_REFERENCE_Z), per = 1.0f / (1.0f + direction.z), off = 1.0f, shift, along;
-  float sx = -direction.x * per, sy = -direction.y * per, foot;
-  pz_chart line_chart, here;
-  along = origin.x * direction.x + origin.y * direction.y + z * direction.z;
-  foot = z - along * direction.z;
-  line_chart.sx = sx;
-  line_chart.sy = sy;
-  line_chart.ox = origin.x - along * direction.x + foot * sx;
-  line_chart.oy = origin.y - along * direction.y + foot * sy;
-  x[0] = path.film.x / PZ_AT(PZ_DOMAIN_FILM);
-  x[1] = path.film.y / PZ_AT(PZ_DOMAIN_FILM);
-  x[2] = (path.pupil.x - PZ_AT(PZ_DOMAIN_SHIFT_X) * path.film.x) / PZ_AT(PZ_DOMAIN_RADIUS_X);
-  x[3] = (path.pupil.y - PZ_AT(PZ_DOMAIN_SHIFT_Y) * path.film.y) / PZ_AT(PZ_DOMAIN_RADIUS_Y);
+PZ_FN pz_path pz_corrected(PZ_T pz_path path, pz_vector o, pz_vector d, int w) {
+  pz_four x = pz_in_domain(PZ_P path.film, path.pupil), wanted, here, next;
+  float a[20], off = 1.0f, h = 0.015625f;
+  o.z -= PZ_AT(PZ_REFERENCE_Z);
+  o = pz_along(o, -pz_dot(o, d), d);
+  wanted.v[0] = -d.x / (1.0f + d.z);
+  wanted.v[1] = -d.y / (1.0f + d.z);
+  wanted.v[2] = o.x + o.z * wanted.v[0];
+  wanted.v[3] = o.y + o.z * wanted.v[1];
   for (int i = 0; i < 5 && off > 1.0e-6f; ++i) {
-    here = pz_sums(PZ_P w, x[0], x[1], x[2], x[3]);
-    a[4] = line_chart.sx - here.sx;
-    a[9] = line_chart.sy - here.sy;
-    a[14] = line_chart.ox - here.ox;
-    a[19] = line_chart.oy - here.oy;
+    here = pz_sums(PZ_P w, x);
     for (int k = 0; k < 4; ++k) { /* derivatives by differences */
-      float h = 0.015625f;
-      pz_chart next = pz_sums(PZ_P w, k == 0 ? x[0] + h : x[0], k == 1 ? x[1] + h : x[1], k == 2 ? x[2] + h : x[2],
-                              k == 3 ? x[3] + h : x[3]);
-      a[k] = (next.sx - here.sx) / h;
-      a[5 + k] = (next.sy - here.sy) / h;
-      a[10 + k] = (next.ox - here.ox) / h;
-      a[15 + k] = (next.oy - here.oy) / h;
+      next = x;
+      next.v[k] += h;
+      next = pz_sums(PZ_P w, next);
+      for (int r = 0; r < 4; ++r) a[5 * r + k] = (next.v[r] - here.v[r]) / h;
+      a[5 * k + 4] = wanted.v[k] - here.v[k];
     }
     for (int k = 0; k < 4; ++k) { /* elimination; the pivot is the largest element of the column */
       int pivot = k;
@@ -1263,153 +1176,105 @@ PZ_FN pz_path pz_corrected(PZ_T pz_path path, pz_vector origin, pz_vector direct
     }
     off = 0.0f;
     for (int k = 0; k < 4; ++k) {
-      shift = a[5 * k + 4] / a[5 * k + k];
-      x[k] += shift;
+      float shift = a[5 * k + 4] / a[5 * k + k];
+      x.v[k] += shift;
       off += pz_abs(shift);
     }
   }
-  path.fate = off < 1.0e-3f && x[0] * x[0] + x[1] * x[1] <= 1.00001f && x[2] * x[2] + x[3] * x[3] <= 1.00001f ? 0 : 5;
-  path.film = pz_xy(x[0] * PZ_AT(PZ_DOMAIN_FILM), x[1] * PZ_AT(PZ_DOMAIN_FILM));
-  path.pupil = pz_xy(x[2] * PZ_AT(PZ_DOMAIN_RADIUS_X) + PZ_AT(PZ_DOMAIN_SHIFT_X) * path.film.x,
-                     x[3] * PZ_AT(PZ_DOMAIN_RADIUS_Y) + PZ_AT(PZ_DOMAIN_SHIFT_Y) * path.film.y);
+  path.fate = off < 1.0e-3f ? pz_fate_in_domain(x) : 5;
+  path.film = pz_xy(x.v[0] * PZ_AT(PZ_DOMAIN_FILM), x.v[1] * PZ_AT(PZ_DOMAIN_FILM));
+  path.pupil = pz_xy(x.v[2] * PZ_AT(PZ_DOMAIN_RADIUS_X) + PZ_AT(PZ_DOMAIN_SHIFT_X) * path.film.x,
+                     x.v[3] * PZ_AT(PZ_DOMAIN_RADIUS_Y) + PZ_AT(PZ_DOMAIN_SHIFT_Y) * path.film.y);
   return path;
+}
+PZ_FN pz_point pz_in_z_plane(pz_follower ray, float z) {
+  float to = (z - ray.at.z) / ray.p.z;
+  return pz_xy(ray.at.x + to * ray.p.x, ray.at.y + to * ray.p.y);
 }
 /* origin: a point of the ray near the lens */
 PZ_FN pz_path pz_arrive(PZ_T pz_vector origin, pz_vector direction, pz_light light) {
   pz_path path;
   pz_beam b;
   PZ_BOOL exact = PZ_AT(PZ_RAYS) == 0.0f;
-  path.film = path.pupil = pz_xy(0.0f, 0.0f);
-  b.at = origin;
-  b.p = direction;
-  b = pz_trace(PZ_P b, light, PZ_TRUE, exact, PZ_FALSE);
-  path.fate = b.fate;
-  if (b.fate != 0) return path;
-  float to = (PZ_AT(PZ_FILM_Z) - b.at.z) / b.p.z;
-  path.film = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
-  to = (PZ_AT(PZ_PUPIL_Z) - b.at.z) / b.p.z;
-  path.pupil = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
-  if (!pz_finite(path.film.x + path.film.y + path.pupil.x + path.pupil.y)) path.fate = 1;
+  b.ray[0].at = origin;
+  b.ray[0].p = direction;
+  b = pz_trace(PZ_P b, light, PZ_TRUE, exact, 1);
+  path.film = pz_in_z_plane(b.ray[0], PZ_AT(PZ_FILM_Z));
+  path.pupil = pz_in_z_plane(b.ray[0], PZ_AT(PZ_PUPIL_Z));
+  path.fate = b.fate != 0 || pz_finite(path.film.x + path.film.y + path.pupil.x + path.pupil.y) ? b.fate : 1;
   return exact || path.fate != 0 ? path : pz_corrected(PZ_P path, origin, direction, light.nearest);
 }
-PZ_FN pz_arrival pz_dark(pz_arrival found, int fate) {
-  found.we = found.pdf_film = found.pdf_pupil = found.pdf_position = found.pdf_direction = 0.0f;
-  found.fate = fate;
-  return found;
+PZ_FN pz_arrival pz_dark(pz_point film, int fate) {
+  pz_arrival dark;
+  dark.film = film;
+  dark.we = dark.pdf_film = dark.pdf_pupil = dark.pdf_position = dark.pdf_direction = 0.0f;
+  dark.fate = fate;
+  return dark;
 }
 /* The importance of a ray of the scene, with unit direction into the lens. */
 PZ_FN pz_arrival pz_importance(PZ_T pz_vector origin, pz_vector direction, float nm) {
-  pz_arrival found;
+  pz_arrival found = pz_dark(pz_xy(0.0f, 0.0f), 0);
   pz_light light = pz_light_of(PZ_P nm);
-  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, length2, area, density;
-  float length = pz_dot(direction, direction), sound = pz_dot(origin, direction) * 0.0f;
-  found.film = pz_xy(0.0f, 0.0f);
-  if (light.nearest < 0 || (PZ_AT(PZ_RAYS) == 1.0f && !light.compiled)) return pz_dark(found, 8);
-  if (!(sound >= 0.0f && pz_abs(length - 1.0f) < 1.0e-3f)) return pz_dark(found, 7);
+  float length2 = pz_dot(direction, direction), sound = pz_dot(origin, direction) * 0.0f, area;
+  if (!pz_has_light(PZ_P light)) return pz_dark(found.film, 8);
+  if (!(sound >= 0.0f && pz_abs(length2 - 1.0f) < 1.0e-3f)) return pz_dark(found.film, 7);
   origin = pz_along(origin, -pz_dot(origin, direction), direction); /* the point nearest to the first vertex */
-  length = 1.5f - 0.5f * length;
-  direction = pz_xyz(length * direction.x, length * direction.y, length * direction.z);
-  pz_path path = pz_arrive(PZ_P origin, direction, light);
-  if (path.fate != 0) return pz_dark(found, path.fate);
+  pz_path path = pz_arrive(PZ_P origin, pz_times(1.5f - 0.5f * length2, direction), light);
+  if (path.fate != 0) return pz_dark(found.film, path.fate);
+  if (!pz_on_film(PZ_P path.film)) return pz_dark(path.film, 6);
+  area = pz_area_at(PZ_P pz_find_pupil(PZ_P path.film.x, path.film.y, light.nearest), path.pupil);
+  if (!(area > 0.0f)) return pz_dark(path.film, 3);
+  pz_vector way = pz_xyz(path.pupil.x - path.film.x, path.pupil.y - path.film.y, PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z));
+  length2 = pz_dot(way, way);
   found.film = path.film;
-  if (!pz_on_film(PZ_P found.film.x, found.film.y)) return pz_dark(found, 6);
-  area = pz_area_at(PZ_P pz_find_cell(PZ_P found.film.x, found.film.y, light.nearest), path.pupil.x, path.pupil.y);
-  if (!(area > 0.0f)) return pz_dark(found, 3);
-  x = path.pupil.x - found.film.x;
-  y = path.pupil.y - found.film.y;
-  length2 = x * x + y * y + depth * depth;
-  density = pz_number(PZ_P light, 2);
-  found.fate = 0;
   found.we = pz_number(PZ_P light, 1);
   found.pdf_film = 1.0f / (PZ_AT(PZ_FILM_WIDTH) * PZ_AT(PZ_FILM_HEIGHT));
   found.pdf_pupil = 1.0f / area;
   area = pz_number(PZ_P light, 3);
   found.pdf_position = area < 3.0e38f ? 1.0f / area : 1.0f; /* a pupil at infinity has no position */
-  found.pdf_direction = density * length2 * length2 * found.pdf_pupil / found.pdf_position;
+  found.pdf_direction = pz_number(PZ_P light, 2) * length2 * length2 * found.pdf_pupil / found.pdf_position;
   return found;
 }
 
-/* The pupil of a scene point: a polygon in the plane through the centre that faces the point, interpolated between
- * nodes over reciprocal distance and field (one angle for a lens of revolution, two angles with cylinders). */
+/* The pupil of a scene point: a polygon in the plane through the centre that faces the point. Nodes lie over reciprocal
+ * distance and field (one angle for a lens of revolution, two angles with cylinders). */
 PZ_STRUCT(pz_scene) {
-  PZ_BOOL known, two; /* two: two angles */
-  int nodes;          /* position of the numbers of the first node in the table */
-  float weight[8];
-  float distance, sine, cosine, azimuth_x, azimuth_y; /* sine, cosine: of the field */
+  PZ_BOOL known;
+  pz_cell cell;
+  float distance;             /* from the centre */
+  pz_vector ahead, right, up; /* unit: to the centre, and across */
+  pz_vector x, y;             /* axes of the polygon, unit */
 };
-PZ_FN float pz_last_field(PZ_T pz_scene s, int w, float at, int angle) {
-  int angles = s.two ? 2 : 1, list = pz_whole(PZ_P PZ_WIDEST) + w * 3 * angles + angle, i = at < 0.5f ? 0 : 1;
-  float low = PZ_AT(list + i * angles), high = PZ_AT(list + (i + 1) * angles);
-  return low + (2.0f * at - PZ_FLOAT(i)) * (high - low);
-}
 PZ_FN pz_scene pz_find_scene(PZ_T pz_vector from, int w) {
   pz_scene s;
-  float z = from.z - PZ_AT(PZ_CENTRE_Z), r2 = from.x * from.x + from.y * from.y, r, per, field, at;
-  float steepest = PZ_AT(PZ_STEEPEST), rim = PZ_AT(PZ_FRONT_HALF), across, down, d, e, f;
-  s.two = PZ_AT(PZ_SCENE_DIMENSIONS) == 3.0f;
+  PZ_BOOL two = PZ_AT(PZ_SCENE_DIMENSIONS) == 3.0f;
+  float z = from.z - PZ_AT(PZ_CENTRE_Z), r2 = from.x * from.x + from.y * from.y, r = PZ_SQRT(r2);
+  float steepest = PZ_AT(PZ_STEEPEST), rim = PZ_AT(PZ_FRONT_HALF), per, sine, cosine, field, at, across, down;
+  float azimuth_x = r2 > 0.0f ? from.x / r : 0.0f, azimuth_y = r2 > 0.0f ? from.y / r : 1.0f;
+  int fields = two ? 6 : 12, angles = two ? 2 : 1, widest, i;
   s.distance = PZ_SQRT(r2 + z * z);
   per = 1.0f / (s.distance > 0.0f ? s.distance : 1.0f);
-  r = PZ_SQRT(r2);
-  s.sine = r * per;
-  s.cosine = -z * per;
-  field = 6.28318530718f * pz_turn_of(s.sine, s.cosine);
-  s.azimuth_x = r2 > 0.0f ? from.x / r : 0.0f;
-  s.azimuth_y = r2 > 0.0f ? from.y / r : 1.0f;
-  s.known = (r2 > rim * rim || z < 0.0f) && steepest * s.distance >= 1.0f && pz_finite(s.distance);
-  at = s.known ? per / steepest : 0.0f;
-  at = at < 1.0f ? at : 1.0f;
-  across = (s.two ? field * pz_abs(s.azimuth_x) : field) / pz_last_field(PZ_P s, w, at, 0);
-  down = s.two ? field * pz_abs(s.azimuth_y) / pz_last_field(PZ_P s, w, at, 1) : 0.0f;
-  s.known = s.known && across <= 1.0f && down <= 1.0f;
-  if (!s.known) across = down = 0.0f;
-  int fields = s.two ? 6 : 12, row = fields + 1, layer = s.two ? row * row : row, i = at < 0.5f ? 0 : 1;
-  int j = PZ_INT(down * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(down * PZ_FLOAT(fields)) : fields - 1;
-  int k = PZ_INT(across * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(across * PZ_FLOAT(fields)) : fields - 1;
-  d = 2.0f * at - PZ_FLOAT(i);
-  e = s.two ? down * PZ_FLOAT(fields) - PZ_FLOAT(j) : 0.0f;
-  f = across * PZ_FLOAT(fields) - PZ_FLOAT(k);
-  if (!s.two) j = 0;
-  for (int m = 0; m < 8; ++m) {
-    s.weight[m] = (m / 4 == 1 ? d : 1.0f - d) * (m / 2 % 2 == 1 ? e : 1.0f - e) * (m % 2 == 1 ? f : 1.0f - f);
+  sine = r * per;
+  cosine = -z * per;
+  s.ahead = pz_xyz(-azimuth_x * sine, -azimuth_y * sine, cosine);
+  s.right = s.x = pz_xyz(azimuth_y, -azimuth_x, 0.0f);
+  s.up = s.y = pz_xyz(azimuth_x * cosine, azimuth_y * cosine, sine);
+  if (two) { /* along x and y, with mirror images */
+    s.x = pz_times(azimuth_x < 0.0f ? -1.0f : 1.0f, pz_along(pz_times(azimuth_y, s.right), azimuth_x, s.up));
+    s.y = pz_times(azimuth_y < 0.0f ? -1.0f : 1.0f, pz_along(pz_times(azimuth_y, s.up), -azimuth_x, s.right));
   }
-  s.nodes = pz_whole(PZ_P PZ_NODES) + (w * 3 * layer + i * layer + j * row + k) * pz_whole(PZ_P PZ_NODE_SIZE);
+  /* The place in the grid: distance, field along y, field along x. */
+  s.known = (r2 > rim * rim || z < 0.0f) && steepest * s.distance >= 1.0f && pz_finite(s.distance);
+  at = s.known && per < steepest ? 2.0f * per / steepest : s.known ? 2.0f : 0.0f;
+  i = pz_below(2, at);
+  widest = pz_whole(PZ_P PZ_WIDEST) + (3 * w + i) * angles;
+  field = 6.28318530718f * pz_turn_of(sine, cosine) * PZ_FLOAT(fields);
+  across = (two ? field * pz_abs(azimuth_x) : field) / pz_linear(PZ_P widest, angles, at - PZ_FLOAT(i));
+  down = two ? field * pz_abs(azimuth_y) / pz_linear(PZ_P widest + 1, angles, at - PZ_FLOAT(i)) : 0.0f;
+  s.known = s.known && across <= PZ_FLOAT(fields) && down <= PZ_FLOAT(fields);
+  s.cell = pz_cell_at(PZ_SCENE_NODES, w, pz_xyz(across, down, at), fields, two ? fields : 0, 2);
   return s;
 }
-PZ_FN float pz_node_number(PZ_T pz_scene s, int k) {
-  int size = pz_whole(PZ_P PZ_NODE_SIZE), row = s.two ? 7 : 0, layer = s.two ? 49 : 13;
-  float sum = 0.0f;
-  for (int m = 0; m < 8; ++m) {
-    if (s.weight[m] != 0.0f) {
-      sum += s.weight[m] * PZ_AT(s.nodes + (m / 4 * layer + m / 2 % 2 * row + m % 2) * size + k);
-    }
-  }
-  return sum;
-}
-PZ_FN pz_point pz_node_point(PZ_T pz_scene s, int k) {
-  return pz_xy(pz_node_number(PZ_P s, k), pz_node_number(PZ_P s, k + 1));
-}
-PZ_FN pz_sector pz_scene_sector(PZ_T pz_scene s, int k) {
-  pz_sector own;
-  own.a = pz_node_point(PZ_P s, 2 + 2 * k);
-  own.b = pz_node_point(PZ_P s, 4 + 2 * k);
-  own.dark_from = own.dark = 0.0f;
-  if (pz_whole(PZ_P PZ_NODE_SIZE) > 132) {
-    own.dark_from = pz_node_number(PZ_P s, 132 + 2 * k);
-    own.dark = pz_node_number(PZ_P s, 133 + 2 * k);
-  }
-  return own;
-}
-/* A point of the plane that faces a scene point, relative to the centre; p: in the frame of the polygons. */
-PZ_FN pz_vector pz_in_plane(pz_scene s, pz_point p) {
-  if (s.two) {
-    float x = s.azimuth_x < 0.0f ? -p.x : p.x, y = s.azimuth_y < 0.0f ? -p.y : p.y;
-    p = pz_xy(s.azimuth_y * x - s.azimuth_x * y, s.azimuth_x * x + s.azimuth_y * y);
-  }
-  return pz_xyz(s.azimuth_y * p.x + s.azimuth_x * s.cosine * p.y, s.azimuth_y * s.cosine * p.y - s.azimuth_x * p.x,
-                s.sine * p.y);
-}
-/* 1 / (density per area of samples in a sector): all sectors get equal numbers of samples. */
-PZ_FN float pz_sector_area(pz_sector s) { return 32.0f * pz_turn(s.a, s.b) * (1.0f - s.dark); }
 /* Solid angle of the ball that all rays meet, for points without a polygon. */
 PZ_FN float pz_cone(PZ_T int w, float distance) {
   float sine = PZ_AT(pz_whole(PZ_P PZ_BALLS) + w) / distance;
@@ -1425,7 +1290,7 @@ PZ_FN PZ_BOOL pz_sees(PZ_T pz_vector from, int w) {
   return r2 > rim * rim || from.z < pz_sag_of(PZ_P surface, u).z + PZ_AT(surface);
 }
 /* True if points at a distance from the centre have polygons; other points sample the cone around the ball. */
-PZ_FN PZ_BOOL pz_has_nodes(PZ_T int w, float distance) {
+PZ_FN PZ_BOOL pz_has_polygons(PZ_T int w, float distance) {
   int angles = PZ_AT(PZ_SCENE_DIMENSIONS) == 3.0f ? 2 : 1;
   return PZ_AT(pz_whole(PZ_P PZ_WIDEST) + w * 3 * angles) > 0.0f && PZ_AT(PZ_STEEPEST) * distance >= 1.0f;
 }
@@ -1434,48 +1299,42 @@ PZ_FN PZ_BOOL pz_has_nodes(PZ_T int w, float distance) {
 PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) {
   pz_connection c;
   pz_light light = pz_light_of(PZ_P nm);
-  pz_vector centre = pz_xyz(0.0f, 0.0f, PZ_AT(PZ_CENTRE_Z)), at;
+  pz_vector at;
   float to_front, sound = (u + v) * 0.0f;
   c.direction = pz_xyz(0.0f, 0.0f, 1.0f);
   c.end = pz_xyz(0.0f, 0.0f, 0.0f);
   c.distance = c.pdf = 0.0f;
-  c.arrival.film = pz_xy(0.0f, 0.0f);
-  c.arrival = pz_dark(c.arrival, light.nearest < 0 ? 8 : 3);
+  c.arrival = pz_dark(pz_xy(0.0f, 0.0f), light.nearest < 0 ? 8 : 3);
   if (light.nearest < 0 || !(sound >= 0.0f)) return c;
   pz_scene s = pz_find_scene(PZ_P from, light.nearest);
   u = pz_clamped(u);
   v = pz_clamped(v);
   if (s.known) {
-    float turn = 64.0f * u, radius, area;
-    int k = PZ_INT(turn) < 63 ? PZ_INT(turn) : 63;
-    pz_sector own = pz_scene_sector(PZ_P s, k);
-    pz_point edge = pz_on_edge(own, turn - PZ_FLOAT(k)), middle = pz_node_point(PZ_P s, 0);
-    radius = PZ_SQRT(pz_squared_radius(own, v));
-    middle = pz_xy(middle.x + radius * edge.x, middle.y + radius * edge.y);
-    at = pz_in_plane(s, middle);
-    c.direction = pz_along(pz_xyz(-s.azimuth_x * s.sine, -s.azimuth_y * s.sine, s.cosine), 1.0f / s.distance, at);
-    area = pz_sector_area(own);
-    radius = 1.0f / PZ_SQRT(pz_dot(c.direction, c.direction));
-    c.direction = pz_xyz(c.direction.x * radius, c.direction.y * radius, c.direction.z * radius);
-    c.distance = s.distance / radius;
-    if (area > 0.0f) c.pdf = c.distance / s.distance * c.distance / area * c.distance;
-    at = pz_along(centre, 1.0f, at);
+    pz_sector own = pz_sector_after(PZ_P s.cell, u);
+    pz_point q = pz_in_polygon(PZ_P s.cell, own, v);
+    float area = pz_area_of(own), length;
+    at = pz_along(pz_times(q.x, s.x), q.y, s.y);
+    c.direction = pz_along(s.ahead, 1.0f / s.distance, at);
+    length = PZ_SQRT(pz_dot(c.direction, c.direction));
+    c.direction = pz_times(1.0f / length, c.direction);
+    c.distance = s.distance * length;
+    if (area > 0.0f) c.pdf = length * c.distance / area * c.distance;
+    at.z += PZ_AT(PZ_CENTRE_Z);
   }
   if (!(c.pdf > 0.0f)) {
-    if (!pz_sees(PZ_P from, light.nearest) || pz_has_nodes(PZ_P light.nearest, s.distance)) return c;
+    if (!pz_sees(PZ_P from, light.nearest) || pz_has_polygons(PZ_P light.nearest, s.distance)) return c;
     float solid = pz_cone(PZ_P light.nearest, s.distance);
     float less = v * solid / 6.28318530718f; /* 1 - cosine of the angle to the centre */
     float sine = PZ_SQRT(less * (2.0f - less));
     pz_point turned = pz_circle(u);
-    s.two = PZ_FALSE;
-    pz_vector across = pz_in_plane(s, pz_xy(sine * turned.y, sine * turned.x));
-    c.direction = pz_along(across, 1.0f - less, pz_xyz(-s.azimuth_x * s.sine, -s.azimuth_y * s.sine, s.cosine));
+    c.direction = pz_along(pz_times(1.0f - less, s.ahead), sine * turned.y, s.right);
+    c.direction = pz_along(c.direction, sine * turned.x, s.up);
     c.distance = less < 1.0f ? s.distance * (1.0f - less) : 0.0f;
     at = pz_along(from, c.distance, c.direction);
     c.pdf = 1.0f / solid;
   }
   c.arrival = pz_importance(PZ_P at, c.direction, nm);
-  to_front = pz_to_front(PZ_P at, pz_xyz(-c.direction.x, -c.direction.y, -c.direction.z));
+  to_front = pz_to_front(PZ_P at, pz_times(-1.0f, c.direction));
   to_front = to_front < c.distance ? to_front : c.distance;
   c.distance -= to_front;
   c.end = pz_along(at, -to_front, c.direction);
@@ -1484,35 +1343,20 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
 /* The density with which pz_connect() samples a direction at a point, 1/sr; a unit vector. */
 PZ_FN float pz_pdf(PZ_T pz_vector from, pz_vector direction, float nm) {
   pz_light light = pz_light_of(PZ_P nm);
-  pz_vector centre = pz_xyz(0.0f, 0.0f, PZ_AT(PZ_CENTRE_Z)), away, met, unit;
-  int k = 0;
   if (light.nearest < 0 || !pz_sees(PZ_P from, light.nearest)) return 0.0f;
   pz_scene s = pz_find_scene(PZ_P from, light.nearest);
-  away = pz_difference(from, centre, 1.0f);
-  unit = pz_xyz(away.x / s.distance, away.y / s.distance, away.z / s.distance);
-  float cosine = -pz_dot(direction, unit);
-  if (!pz_has_nodes(PZ_P light.nearest, s.distance)) {
+  float cosine = pz_dot(direction, s.ahead), squared;
+  if (!pz_has_polygons(PZ_P light.nearest, s.distance)) {
     float solid = pz_cone(PZ_P light.nearest, s.distance);
     return 1.0f - cosine <= solid / 6.28318530718f * 1.000001f ? 1.0f / solid : 0.0f;
   }
   if (!(s.known && cosine > 0.0f)) return 0.0f;
-  met = pz_along(away, s.distance / cosine, direction);
-  pz_point q = pz_xy(s.azimuth_y * met.x - s.azimuth_x * met.y,
-                     s.cosine * (s.azimuth_x * met.x + s.azimuth_y * met.y) + s.sine * met.z);
-  if (s.two) {
-    q = pz_xy(s.azimuth_y * q.x + s.azimuth_x * q.y, s.azimuth_y * q.y - s.azimuth_x * q.x);
-    q = pz_xy(s.azimuth_x < 0.0f ? -q.x : q.x, s.azimuth_y < 0.0f ? -q.y : q.y);
-  }
-  pz_point middle = pz_node_point(PZ_P s, 0);
-  q = pz_xy(q.x - middle.x, q.y - middle.y);
-  pz_point first = pz_node_point(PZ_P s, 2);
-  for (int step = 32; step > 0; step /= 2) {
-    if (pz_comes_before(first, pz_node_point(PZ_P s, 2 + 2 * (k + step)), q)) k += step;
-  }
-  pz_sector own = pz_scene_sector(PZ_P s, k);
-  float squared = pz_squared_at(own, q);
-  if (!(squared >= 0.0f && squared <= 1.0f) || pz_is_dark(own, squared)) return 0.0f;
-  return s.distance / pz_sector_area(own) * s.distance / (cosine * cosine * cosine);
+  pz_vector met = pz_times(s.distance / cosine, direction); /* from the point to the plane */
+  pz_point q = pz_plus(pz_xy(pz_dot(met, s.x), pz_dot(met, s.y)), -1.0f, pz_middle(PZ_P s.cell));
+  pz_sector own = pz_sector_towards(PZ_P s.cell, q);
+  squared = pz_squared_at(own, q);
+  if (!(squared >= 0.0f && squared <= 1.0f)) return 0.0f;
+  return s.distance / pz_area_of(own) * s.distance / (cosine * cosine * cosine);
 }
 
 #endif /* PETZVAL_CAMERA_H */

@@ -97,8 +97,7 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, std::shared_ptr<c
                  ? std::optional(TiltedFilm(placed, model.pupils(), options.threads))
                  : std::nullopt),
       weights(lens, model, options.bokeh),
-      transmission(options.transmission ? camera_detail::Transmission(lens, model)
-                                        : camera_detail::Transmission()),
+      transmission(options.transmission ? camera_detail::Transmission(lens, model) : camera_detail::Transmission()),
       wavelengths(model, scales(lens, film, model, weights, transmission, options.normalisation), nm_of(lens)),
       front(camera_detail::front_of(lens)),
       focus(facts, placed, model_, options.focal_surface, options.expressive),

@@ -162,11 +162,10 @@ void put_pupils(Numbers& to, const FilmPupilArrays& pupils) {
   to.set(PZ_PUPIL_DIMENSIONS, pupils.dimensions);
   to.set(PZ_REACH, pupils.reach), to.set(PZ_ROWS_PER_MM, pupils.rows_per_mm);
   to.set(PZ_PUPIL_ROWS, pupils.rows), to.set(PZ_PUPIL_COLUMNS, pupils.columns);
-  to.set(PZ_CELL_SIZE, pupils.cell_size), to.set(PZ_OBSCURED, pupils.obscured ? 1 : 0);
-  to.set(PZ_CORRECTIONS, pupils.corrections), to.set(PZ_STOP_SIZE, pupils.stop_size);
+  to.set(PZ_FILM_NODE_SIZE, pupils.node_size), to.set(PZ_STOP_SIZE, pupils.stop_size);
   to.set(PZ_IRIS_AREA, pupils.iris_area);
   to.begin(PZ_HALF_WIDTHS), to.add_all(pupils.half_widths);
-  to.begin(PZ_CELLS), to.add_all(pupils.cells);
+  to.begin(PZ_FILM_NODES), to.add_all(pupils.nodes);
   to.begin(PZ_STOPS), to.add_all(pupils.stops);
   to.begin(PZ_IRIS), to.add_all(pupils.iris);
 }
@@ -174,10 +173,10 @@ void put_pupils(Numbers& to, const FilmPupilArrays& pupils) {
 void put_entrance(Numbers& to, const EntrancePupilArrays& entrance) {
   to.set(PZ_SCENE_DIMENSIONS, entrance.dimensions);
   to.set(PZ_CENTRE_Z, entrance.centre_z), to.set(PZ_STEEPEST, entrance.steepest);
-  to.set(PZ_FRONT_HALF, entrance.front_half), to.set(PZ_NODE_SIZE, entrance.node_size);
+  to.set(PZ_FRONT_HALF, entrance.front_half), to.set(PZ_SCENE_NODE_SIZE, entrance.node_size);
   to.begin(PZ_BALLS), to.add_all(entrance.balls);
   to.begin(PZ_WIDEST), to.add_all(entrance.widest);
-  to.begin(PZ_NODES), to.add_all(entrance.nodes);
+  to.begin(PZ_SCENE_NODES), to.add_all(entrance.nodes);
 }
 
 }  // namespace

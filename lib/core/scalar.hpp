@@ -61,7 +61,8 @@ constexpr bool any_of(bool a, bool b) noexcept { return a || b; }
 /// True in the lanes in which `a` holds and `b` does not.
 constexpr bool without(bool a, bool b) noexcept { return a && !b; }
 
-/// Tables of numbers of type R, read at an index for each lane of the scalar `T`. lane_table.hpp has the form for lanes.
+/// Tables of numbers of type R, read at an index for each lane of the scalar `T`. lane_table.hpp has the form for
+/// lanes.
 template <class T>
 struct Table {
   using Index = std::int32_t;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 
-#include "core/loop_math.hpp"
+#include "core/scalar.hpp"
+#include "core/simd.hpp"
 
 /// Uniform points of an iris, one at a time. Used by loops over many samples and by IrisShape.
 namespace petzval::iris_detail {
@@ -36,16 +38,17 @@ struct IrisSectors {
 // Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.
 namespace {
 
-template <class R>
+template <class V>
 struct IrisPoint {
-  R x, y;
+  V x, y;
 };
 
 /// Taylor series of sin(a) / a (first = 2) or cos(a) (first = 1) in s = a^2:
 ///     1 - s / (first (first + 1)) (1 - s / ((first + 2) (first + 3)) (1 - ...)).
 /// Even and odd terms are summed separately, which halves the latency of a single sample.
-template <int first, int terms, class R>
-inline R turning_series(R s) noexcept {
+template <int first, int terms, class V>
+PETZVAL_INLINE V turning_series(const V& s) noexcept {
+  using R = kernel::Storage<V>;
   struct Terms {
     R of[terms + 1] = {R(1)};  // the last term is 0
     constexpr Terms() {
@@ -55,59 +58,62 @@ inline R turning_series(R s) noexcept {
   };
   constexpr Terms term;
   constexpr int last = (terms - 1) / 2 * 2;
-  const R s2 = s * s;
-  R even = term.of[last], odd = term.of[last + 1];
+  const V s2 = s * s;
+  V even(term.of[last]), odd(term.of[last + 1]);
   for (int k = last - 2; k >= 0; k -= 2) {
-    even = even * s2 + term.of[k];
-    odd = odd * s2 + term.of[k + 1];
+    even = even * s2 + V(term.of[k]);
+    odd = odd * s2 + V(term.of[k + 1]);
   }
   return even + s * odd;
 }
 
 /// The point of the unit circle at the fraction u of a turn from +y towards +x, u in [0, 1]. Accurate to 2e-7 in float
 /// and 1e-15 in double.
-template <class R>
-inline IrisPoint<R> circle_point(R u) noexcept {
+template <class V>
+PETZVAL_INLINE IrisPoint<V> circle_point(const V& u) noexcept {
+  using Table = kernel::Table<V>;
+  using R = kernel::Storage<V>;
   constexpr bool single = sizeof(R) == sizeof(float);
   constexpr int sine_terms = single ? 5 : 8, cosine_terms = single ? 5 : 9;
-  const R quarters = R(4) * u;
-  const auto quarter = static_cast<std::int32_t>(quarters + R(0.5));
-  const R angle = R(std::numbers::pi / 2) * (quarters - static_cast<R>(quarter)), square = angle * angle;
-  const R sine = angle * turning_series<2, sine_terms>(square), cosine = turning_series<1, cosine_terms>(square);
+  const V quarters = V(R(4)) * u;
+  const auto quarter = Table::whole(V(quarters + V(R(0.5))));
+  const V angle = V(R(std::numbers::pi / 2)) * (quarters - Table::number(quarter)), square = angle * angle;
+  const V sine = angle * turning_series<2, sine_terms>(square), cosine = turning_series<1, cosine_terms>(square);
   // Branch-free, because a branch on a random quarter is mispredicted.
-  const R swapped = static_cast<R>(quarter & 1), change = swapped * (cosine - sine);
-  return {static_cast<R>(1 - (quarter & 2)) * (sine + change),
-          static_cast<R>(1 - ((quarter + 1) & 2)) * (cosine - change)};
+  const V change = Table::number(quarter & 1) * (cosine - sine), one(R(1));
+  return {(one - Table::number(quarter & 2)) * (sine + change),
+          (one - Table::number((quarter + 1) & 2)) * (cosine - change)};
 }
 
-template <class R>
-inline IrisPoint<R> disc_point(R u, R v) noexcept {
-  const auto [x, y] = circle_point(u);
-  const R radius = core_detail::square_root(v);
-  return {radius * x, radius * y};
-}
-
-template <class R>
-inline IrisPoint<R> sector_point(const IrisSectors<R>& s, R u, R v) noexcept {
-  const R at = u * static_cast<R>(static_cast<std::int32_t>(s.count));
-  const auto whole = static_cast<std::int32_t>(at), last = static_cast<std::int32_t>(s.count) - 1;
-  const std::int32_t k = whole < last ? whole : last;
-  const R q = R(2) * (at - static_cast<R>(k)) - R(1), t = R(2) * q * q - R(1);
-  R across = s.across[edge_terms<R> - 1], along = s.along[edge_terms<R> - 1];
-  for (std::size_t i = edge_terms<R> - 1; i-- > 0;) {
-    across = s.across[i] + t * across;
-    along = s.along[i] + t * along;
+/// A uniform point of the iris for u and v in [0, 1].
+template <class V, class R>
+PETZVAL_INLINE IrisPoint<V> iris_point(const IrisSectors<R>& s, const V& u, const V& v) noexcept {
+  using Table = kernel::Table<V>;
+  using kernel::select, std::sqrt;
+  const V radius = sqrt(v);
+  if (s.count == 0) {
+    const IrisPoint<V> p = circle_point(u);
+    return {radius * p.x, radius * p.y};
   }
-  const R radius = core_detail::square_root(v), sine = s.turns[2 * k], cosine = s.turns[2 * k + 1];
-  across *= q;
-  return {radius * (along * sine + across * cosine), radius * (along * cosine - across * sine)};
+  const auto count = static_cast<R>(static_cast<std::int32_t>(s.count));
+  const V at = u * V(count), last(count - R(1));
+  const auto k = Table::whole(select(at < last, at, last));
+  const V q = V(R(2)) * (at - Table::number(k)) - V(R(1)), t = V(R(2)) * q * q - V(R(1));
+  V across(s.across[edge_terms<R> - 1]), along(s.along[edge_terms<R> - 1]);
+  for (std::size_t i = edge_terms<R> - 1; i-- > 0;) {
+    across = V(s.across[i]) + t * across;
+    along = V(s.along[i]) + t * along;
+  }
+  across = across * q;
+  const auto turns = Table::template rows<2>(s.turns, k * 2);
+  return {radius * (along * turns[0] + across * turns[1]), radius * (along * turns[1] - across * turns[0])};
 }
 
 /// True if the point lies on the open side of the edge of blade k.
-template <class R>
-inline bool within_edge(const IrisSectors<R>& s, std::size_t k, R x, R y) noexcept {
+template <class V, class R>
+PETZVAL_INLINE kernel::Mask<V> within_edge(const IrisSectors<R>& s, std::size_t k, const V& x, const V& y) noexcept {
   const R* edge = s.edges + 4 * k;
-  return x * edge[0] + y * edge[1] + edge[2] * (x * x + y * y) <= edge[3];
+  return x * V(edge[0]) + y * V(edge[1]) + V(edge[2]) * (x * x + y * y) <= V(edge[3]);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ IrisShape::IrisShape(const Iris& iris) : iris_(iris), area_(iris_area(iris)) {
 }
 
 Vec2<double> IrisShape::sample(double u, double v) const noexcept {
-  const auto [x, y] = round() ? disc_point(u, v) : sector_point(sectors<double>(), u, v);
+  const auto [x, y] = iris_point(sectors<double>(), u, v);
   return {x, y};
 }
 

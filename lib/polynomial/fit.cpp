@@ -228,7 +228,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
       mirrors ? std::max<std::size_t>(3072, 24 * polynomial_detail::mirror_terms(degree).size()) : 1536;
   constexpr std::size_t test_samples = 4096;
   const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),
-                fresh = spread(none, fitted, test_samples, false), at_edges = edges(none, mirrors ? 9 : 1);
+                fresh = spread(none, fitted, test_samples, false), at_edges = edges(none, mirrors ? 17 : 1);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,

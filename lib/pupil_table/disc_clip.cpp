@@ -28,19 +28,26 @@ PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double 
   const double low = std::max(-reach(polygon, -towards), from_middle - radius);
   const double high = std::min(reach(polygon, towards), from_middle + radius);
   const double step = low < high ? (low + high) / 2 : from_middle;
-  PupilPolygon result;
-  result.middle = {0, polygon.middle.y + step};
-  if (!(low < high)) return result;
-  const double to_centre = from_middle - step, square_margin = radius * radius - to_centre * to_centre;
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    const Vec2<double> offset = polygon.corners[k] - step * towards;
-    // Fraction at which the line to the corner leaves the disc: square t^2 - 2 t along - room = 0.
-    const double square = offset.x * offset.x + offset.y * offset.y;
-    const double along = (offset.x * towards.x + offset.y * towards.y) * to_centre;
-    const double leaves = square > 0 ? (along + std::sqrt(along * along + square * square_margin)) / square : 1;
-    result.corners[k] = std::min(leaves, 1.0) * offset;
+  PupilPolygon about_middle = polygon;
+  about_middle.middle = {0, polygon.middle.y + step};
+  for (auto& corner : about_middle.corners) corner -= step * towards;
+  PupilRegion region{.directions = 2 * polygon_corners};
+  region.middle = about_middle.middle;
+  if (low < high) {
+    const double to_centre = from_middle - step, square_margin = radius * radius - to_centre * to_centre;
+    // Fraction of d at which a line outwards leaves the polygon or the disc: square t^2 - 2 t along - margin = 0.
+    const auto leaves = [&](const Vec2<double>& d) {
+      const double square = d.x * d.x + d.y * d.y, along = d.y * to_centre;
+      return std::min(reach(about_middle, d), (along + std::sqrt(along * along + square * square_margin)) / square);
+    };
+    region.half_axes = {leaves({1, 0}), (high - low) / 2};
+    for (std::size_t k = 0; k < region.directions; ++k) {
+      const double end = leaves(region.half_axes * region.unit(k));
+      const Vec2<double> rim = region.at(k, end);
+      region.spans.push_back({k, 0, end, {region.middle.x, region.middle.y}, {rim.x, rim.y}});
+    }
   }
-  return result;
+  return polygon_of(region, PolygonFit::equal_area);
 }
 
 }  // namespace petzval::pupil_table_detail

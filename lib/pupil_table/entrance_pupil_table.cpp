@@ -104,13 +104,8 @@ struct EntrancePupilTable::Data {
     }
   }
   void add(const PupilPolygon& p) {
-    const auto put = [this](const Vec2<double>& v) { nodes.push_back(v.x), nodes.push_back(v.y); };
-    put(p.middle);
-    for (std::size_t k = 0; k <= polygon_corners; ++k) put(p.corners[k % polygon_corners]);
-    for (std::size_t k = 0; k < polygon_corners; ++k) {
-      put({p.obscured_from[k], p.obscured[k]});
-      obscured = obscured || p.obscured[k] > 0;
-    }
+    p.append_to(nodes);
+    obscured = obscured || std::any_of(p.obscured.begin(), p.obscured.end(), [](double width) { return width > 0; });
   }
 
   template <int dimensions>

@@ -12,12 +12,12 @@
 
 #include "core/quadrature.hpp"
 #include "film_grid.hpp"
+#include "film_loops.hpp"
 #include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "polygon_loops.hpp"
 #include "pupil_table/film_pupil_table.hpp"
-#include "stop_cells.hpp"
+#include "stop_nodes.hpp"
 
 namespace petzval {
 namespace pupil_table_detail {
@@ -39,18 +39,6 @@ inline double solid_angle_at(const TwoPlanes& space, const FilmPoint& film, doub
   return 1 / (length2 * length2);
 }
 
-/// Coefficients of a value that is bilinear in a cell (CellLayout), from the corner nodes: first row, then second row.
-template <int dimensions, class Nodes, class Number>
-std::array<double, CellLayout<dimensions>::linear> linear(const Nodes& nodes, const Number& number) {
-  const double a = number(*nodes[0]), b = number(*nodes[1]);
-  if constexpr (dimensions == 1) {
-    return {a, b - a};
-  } else {
-    const double c = number(*nodes[2]), d = number(*nodes[3]);
-    return {a, b - a, c - a, (d - c) - (b - a)};
-  }
-}
-
 }  // namespace pupil_table_detail
 
 /// The contents of a table: images of an iris, or a grid of polygons with a stop.
@@ -66,10 +54,9 @@ struct FilmPupilTable::Data {
   double height = 0;                  // y of the last row, mm
   std::vector<double> half_widths;    // FilmGrid::half_widths
   bool obscured = false, enclosing = false;
-  int corrections = 0;
-  std::vector<double> cells;  // CellLayout
-  std::vector<float> cells_single, half_widths_single;
-  std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null for a round or unknown stop
+  std::vector<double> numbers;  // [wavelength][node] NodeLayout
+  std::vector<float> numbers_single, half_widths_single;
+  std::shared_ptr<const pupil_table_detail::StopNodes> stop;  // null for a round or unknown stop
   std::shared_ptr<const Data> unclipped;                      // the unclipped pupils; null if there is no rim
 
   /// A table with the same film, planes and wavelengths, but without pupils.
@@ -84,7 +71,7 @@ struct FilmPupilTable::Data {
 
   std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
   FilmPoint node_point(std::size_t node) const noexcept;
-  /// The polygon at a node as passed to add(), without obscurations.
+  /// The polygon at a node as passed to add().
   pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;
 
   /// Rows per mm. 0 for a film smaller than 1e-30 mm, so that the result is finite in float.
@@ -92,30 +79,37 @@ struct FilmPupilTable::Data {
     constexpr double smallest = 1e-30;
     return height > smallest ? static_cast<double>(rows) / height : 0;
   }
-  template <int dimensions, class R>
-  pupil_table_detail::PolygonGrid<dimensions, R> grid() const noexcept {
-    pupil_table_detail::PolygonGrid<dimensions, R> result;
-    if constexpr (sizeof(R) == sizeof(float)) {
-      result.cells = cells_single.data(), result.half_widths = half_widths_single.data();
-    } else {
-      result.cells = cells.data(), result.half_widths = half_widths.data();
-    }
+  template <class Chart, class R>
+  pupil_table_detail::PupilGrid<Chart, R> grid() const noexcept {
+    constexpr bool single = sizeof(R) == sizeof(float);
+    const auto of = [](const std::vector<float>& in_float, const std::vector<double>& in_double) {
+      if constexpr (single) {
+        return in_float.data();
+      } else {
+        return in_double.data();
+      }
+    };
     const auto count = [](std::size_t n) { return static_cast<std::int32_t>(n); };
-    result.rows = count(rows), result.columns = count(columns);
-    result.wavelengths = count(wavelengths), result.primary = count(primary);
+    pupil_table_detail::PupilGrid<Chart, R> result;
+    result.chart.rows = count(rows);
     // Includes corner points of the film after rounding.
-    result.reach = static_cast<R>(reach * (1 + 1e-6));
-    result.rows_per_mm = static_cast<R>(rows_per_mm());
+    result.chart.reach = static_cast<R>(reach * (1 + 1e-6));
+    result.chart.rows_per_mm = static_cast<R>(rows_per_mm());
+    if constexpr (requires { result.chart.columns; }) {
+      result.chart.columns = count(columns);
+      result.chart.half_widths = of(half_widths_single, half_widths);
+    }
+    result.nodes = of(numbers_single, numbers);
+    result.wavelengths = count(wavelengths), result.primary = count(primary);
     result.obscured = obscured;
-    result.corrections = corrections;
     if (stop) result.stop = stop->borrowed<R>();
     return result;
   }
-  /// Calls body(grid, loops) with the grid in R.
+  /// Calls body(grid) with the grid in R.
   template <class R, class Body>
   auto with_grid(const Body& body) const {
-    return dimensions == 1 ? body(grid<1, R>(), pupil_table_detail::plain_polar_loops)
-                           : body(grid<2, R>(), pupil_table_detail::plain_quadrant_loops);
+    using namespace pupil_table_detail;
+    return dimensions == 1 ? body(grid<FilmRadius<R>, R>()) : body(grid<FilmQuadrant<R>, R>());
   }
 
   /// Index of the pupils for a wavelength; `wavelengths` if the wavelength is not covered.
@@ -128,25 +122,32 @@ struct FilmPupilTable::Data {
     const std::size_t found = position(at);
     return found < wavelengths ? static_cast<std::int32_t>(found) : -1;
   }
-  /// Calls body(begin, count, positions) for batches of the N rays.
-  template <class Body>
-  void by_position(std::size_t count, const RayWavelengths& given, const Body& body) const noexcept {
-    if (!given.in_nm()) {
-      body(0, count, given);
+  /// Calls body(table, begin, count, wavelengths) for batches of the N rays: with the images, or with the grid and
+  /// positions of wavelengths.
+  template <class R, class Body>
+  void with_table(std::size_t count, const RayWavelengths& given, const Body& body) const noexcept {
+    if (images) {
+      body(images->table<R>(given.all), 0, count, given);
       return;
     }
-    if (!given.each_nm) {
-      body(0, count, RayWavelengths{position(given.all)});
-      return;
-    }
-    constexpr std::size_t block = 256;
-    std::array<std::uint16_t, block> positions;
-    for (std::size_t begin = 0; begin < count; begin += block) {
-      const std::size_t n = std::min(block, count - begin);
-      pupil_table_detail::polar_loops().find_nearest(compiled.nearest_position(), n, given.each_nm + begin,
-                                                     positions.data());
-      body(begin, n, RayWavelengths{.each = positions.data()});
-    }
+    with_grid<R>([&](const auto& grid) {
+      if (!given.in_nm()) {
+        body(grid, 0, count, given);
+        return;
+      }
+      if (!given.each_nm) {
+        body(grid, 0, count, RayWavelengths{position(given.all)});
+        return;
+      }
+      constexpr std::size_t block = 256;
+      std::array<std::uint16_t, block> positions;
+      for (std::size_t begin = 0; begin < count; begin += block) {
+        const std::size_t n = std::min(block, count - begin);
+        pupil_table_detail::film_loops().find_nearest(compiled.nearest_position(), n, given.each_nm + begin,
+                                                      positions.data());
+        body(grid, begin, n, RayWavelengths{.each = positions.data()});
+      }
+    });
   }
 };
 

@@ -4,54 +4,75 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dual.hpp"
 #include "film_pupil_data.hpp"
 #include "petzval/core/error.hpp"
-#include "polygon_blocks.hpp"
 #include "polygon_clearance.hpp"
 #include "pupil/line_extents.hpp"
+#include "pupil_kernel.hpp"
 
 namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
+using kernel::Dual;
 
-template <int dimensions>
-std::pair<CellPosition<double>, CellPolygon<dimensions, true, double, double>> find(
-    const PolygonGrid<dimensions, double>& grid, const FilmPoint& film, std::int32_t wavelength) noexcept {
-  const CellPosition<double> at = cell_position(grid, film.x, film.y, 1, wavelength);
-  return {at, {grid.cells, at.cell * CellLayout<dimensions>::size, at.t, at.s}};
+template <class V, class Grid>
+CellOf<typename Grid::Chart, V> cell_at(const Grid& grid, const V& x, const V& y, std::int32_t wavelength) noexcept {
+  return grid.chart.find(x, y, wavelength >= 0, std::max(wavelength, 0) * grid.chart.nodes());
 }
+
+/// The polygon of one film point.
+template <class Grid>
+struct PolygonAt {
+  const Grid& grid;
+  CellOf<typename Grid::Chart, double> cell;
+
+  PolygonAt(const Grid& g, const FilmPoint& film, std::int32_t wavelength) noexcept
+      : grid(g), cell(cell_at(g, film.x, film.y, wavelength)) {}
+  Point<double> middle() const noexcept { return middle_of<double>(grid, cell); }
+  Point<double> corner(std::size_t k) const noexcept {
+    return corner_of<double>(grid, cell, static_cast<std::int32_t>(k));
+  }
+  Sector<double> sector(std::size_t k) const noexcept {
+    const auto i = static_cast<std::int32_t>(k);
+    return grid.obscured ? sector_of<true, double>(grid, cell, i) : sector_of<false, double>(grid, cell, i);
+  }
+  double area() const noexcept {
+    double sum = 0;
+    for (std::size_t k = 0; cell.known && k < polygon_corners; ++k) sum += std::max(sector(k).area(), 0.0);
+    return sum;
+  }
+  bool samples_iris() const noexcept {
+    return grid.stop.nodes && pupil_table_detail::samples_iris<double>(grid, cell) > 0;
+  }
+  Point<double> to_grid(double x, double y) const noexcept {
+    return Grid::Chart::to_grid(cell, Point<double>{x, y}) - middle();
+  }
+  /// Calls body(obscured, stopped) with compile-time constants.
+  template <class Body>
+  auto with_kind(const Body& body) const noexcept {
+    if (grid.obscured)
+      return grid.stop.nodes ? body(std::true_type(), std::true_type()) : body(std::true_type(), std::false_type());
+    return grid.stop.nodes ? body(std::false_type(), std::true_type()) : body(std::false_type(), std::false_type());
+  }
+};
 
 /// Derivatives of the middle of a polygon by its film point.
-FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<1, double>& grid, const FilmPoint& film,
+template <class Grid>
+FilmPupilTable::Derivatives motion_of_middle(const Grid& grid, const FilmPoint& film,
                                              std::int32_t wavelength) noexcept {
-  const auto [at, polygon] = find(grid, film, wavelength);
-  const double r = std::hypot(film.x, film.y);
-  const double along = grid.cells[polygon.begin + CellLayout<1>::middle + 3] * grid.rows_per_mm;
-  // In the first row the quotient would be inaccurate near the axis.
-  const double across = r * grid.rows_per_mm >= 1 ? polygon.middle().y / r : along;
-  const double mixed = (along - across) * at.sine * at.cosine;
-  return {{along * at.sine * at.sine + across * at.cosine * at.cosine, mixed},
-          {mixed, along * at.cosine * at.cosine + across * at.sine * at.sine}};
-}
-FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<2, double>& grid, const FilmPoint& film,
-                                             std::int32_t wavelength) noexcept {
-  const auto found = find(grid, film, wavelength);
-  const CellPosition<double>& at = found.first;
-  const std::int32_t begin = found.second.begin;
-  const std::int32_t row = at.cell / grid.columns % grid.rows, column = at.cell % grid.columns;
-  const double* const half = grid.half_widths + row;
-  const double change = half[1] - half[0], width = half[0] + at.s * change, columns = grid.columns;
-  const double t_by_x = width > 0 ? columns / width : 0;
-  const double t_by_y = width > 0 ? -(column + at.t) * change * grid.rows_per_mm / width : 0;
-  const auto by = [&](std::int32_t axis) {
-    const double* const value = grid.cells + begin + CellLayout<2>::middle + 4 * axis;
-    const double by_t = value[1] + at.s * value[3], by_s = value[2] + at.t * value[3];
-    return Vec2<double>{by_t * t_by_x, by_s * grid.rows_per_mm + by_t * t_by_y};
-  };
-  const Vec2<double> x = by(0), y = by(1);
-  const double sign = at.sine * at.cosine;
-  return {{x.x, sign * y.x}, {sign * x.y, y.y}};
+  FilmPoint at = film;
+  if constexpr (Grid::Chart::cell_nodes == 2) {
+    // Near the axis, quotients by the distance would be inaccurate: take the motion at the end of the first row.
+    const double r = std::hypot(film.x, film.y), row = (1 - 1e-9) / grid.chart.rows_per_mm;
+    if (r < row && row <= grid.chart.reach)
+      at = r > 0 ? FilmPoint{film.x / r * row, film.y / r * row} : FilmPoint{0, row};
+  }
+  if (Grid::Chart::cell_nodes == 2 && !(at.x * at.x + at.y * at.y > axis_r2<double>)) return {};  // a tiny film
+  const auto cell = cell_at(grid, Dual(at.x, 0), Dual(at.y, 1), wavelength);
+  const Point<Dual> middle = Grid::Chart::to_film(cell, middle_of<Dual>(grid, cell));
+  return {{middle.x.v.x, middle.y.v.x}, {middle.x.v.y, middle.y.v.y}};
 }
 
 }  // namespace
@@ -69,18 +90,19 @@ bool FilmPupilTable::knows_stop() const noexcept { return data_->stop != nullptr
 FilmPupilArrays FilmPupilTable::arrays() const {
   if (data_->images) throw Error("pupils: arrays: the pupils have a closed form; must be polygons");
   FilmPupilArrays result;
-  const auto put = [&](const auto& grid) {
-    using Layout = CellLayout<std::decay_t<decltype(grid)>::dimensions>;
-    result.reach = grid.reach, result.rows_per_mm = grid.rows_per_mm;
-    result.obscured = grid.obscured, result.corrections = grid.corrections;
-    result.cell_size = grid.obscured ? Layout::size : Layout::obscured;
-    for (std::size_t begin = 0; begin < data_->cells_single.size(); begin += Layout::size) {
-      const auto cell = data_->cells_single.begin() + static_cast<std::ptrdiff_t>(begin);
-      result.cells.insert(result.cells.end(), cell, cell + static_cast<std::ptrdiff_t>(result.cell_size));
-    }
+  result.dimensions = data_->dimensions;
+  result.rows = data_->rows, result.columns = data_->columns;
+  result.half_widths = data_->half_widths_single;
+  result.node_size = static_cast<std::size_t>(data_->obscured ? NodeLayout::size : NodeLayout::obscured);
+  const std::vector<float>& numbers = data_->numbers_single;
+  for (auto node = numbers.begin(); node != numbers.end(); node += NodeLayout::size) {
+    result.nodes.insert(result.nodes.end(), node, node + static_cast<std::ptrdiff_t>(result.node_size));
+  }
+  data_->with_grid<float>([&](const auto& grid) {
+    result.reach = grid.chart.reach, result.rows_per_mm = grid.chart.rows_per_mm;
     if (!data_->stop) return;
-    result.stops = data_->stop->cells_single;
-    result.stop_size = StopLayout<std::decay_t<decltype(grid)>::dimensions>::size;
+    result.stops = data_->stop->numbers_single;
+    result.stop_size = StopLayout<std::decay_t<decltype(grid.chart)>::map_terms>::size;
     const auto& iris = grid.stop.iris;
     result.iris_area = grid.stop.area;
     const auto add = [&](const float* from, std::size_t count) {
@@ -89,45 +111,39 @@ FilmPupilArrays FilmPupilTable::arrays() const {
     constexpr std::size_t terms = iris_detail::edge_terms<float>;
     if (iris.count > 0) add(iris.across, terms), add(iris.along, terms), add(iris.turns, 2 * iris.count);
     if (iris.count > 0) add(iris.edges, 4 * iris.count);
-  };
-  data_->dimensions == 1 ? put(data_->grid<1, float>()) : put(data_->grid<2, float>());
-  result.dimensions = data_->dimensions;
-  result.rows = data_->rows, result.columns = data_->columns;
-  result.half_widths = data_->half_widths_single;
+  });
   return result;
 }
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
-  PupilSample result;
-  data_->with_grid<double>([&](const auto& grid, const auto&) {
-    sample_loops<std::decay_t<decltype(grid)>::dimensions>().one(grid, film.x, film.y, u, v, data_->known(wavelength),
-                                                                 result.x, result.y, result.area);
+  return data_->with_grid<double>([&](const auto& grid) -> PupilSample {
+    const PolygonAt polygon(grid, film, data_->known(wavelength));
+    if (!polygon.cell.known || !std::isfinite(u + v)) return {};
+    const auto [x, y, area] =
+        polygon.samples_iris() ? in_iris<double>(grid, polygon.cell, u, v)
+                               : polygon.with_kind([&](auto obscured, auto stopped) {
+                                   return in_polygon<obscured.value, stopped.value, double>(grid, polygon.cell, u, v);
+                                 });
+    return {x, y, area};
   });
-  return result;
 }
 
 template <class T>
 void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
                             const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
-  if (data_->images) {
-    data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
-    return;
-  }
-  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
-    data_->with_grid<T>([&](const auto& grid, const auto&) {
-      const auto& loops = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
-      loops.sample(grid, n, film_x + o, film_y + o, u + o, v + o, known, x + o, y + o, areas + o);
-    });
-  });
+  data_->with_table<T>(count, wavelengths,
+                       [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
+                         const T* const lines[] = {film_x + o, film_y + o, u + o, v + o};
+                         T* const to[] = {x + o, y + o, areas + o};
+                         film_loops().of<std::decay_t<decltype(table)>>().sample(table, n, lines, known, to);
+                       });
 }
 
 double FilmPupilTable::polygon_area(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->area_of_stop(film, wavelength);
-  return data_->with_grid<double>([&](const auto& grid, const auto&) {
-    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
-    return at.known ? std::max(polygon.total_area(), 0.0) : 0.0;
-  });
+  return data_->with_grid<double>(
+      [&](const auto& grid) { return PolygonAt(grid, film, data_->known(wavelength)).area(); });
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
@@ -143,8 +159,9 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
 
 template <class Value>
 double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const {
-  // If an iris clips the polygon, areas change fast with u.
-  return pupil_table_detail::mean_over_samples(data_->stop ? 128 : 16, [&](double u, double v) {
+  // One sample for each sector. If an iris clips the polygon, areas change fast with u.
+  constexpr int sectors = static_cast<int>(polygon_corners);
+  return pupil_table_detail::mean_over_samples(data_->stop ? 2 * sectors : sectors, [&](double u, double v) {
     const PupilSample s = sample(film, u, v, wavelength);
     return s.area > 0 ? s.area * value(s) : 0;
   });
@@ -152,21 +169,23 @@ double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavel
 
 Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->middle(film, wavelength);
-  return data_->with_grid<double>([&](const auto& grid, const auto&) -> Vec2<double> {
-    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
-    if (!at.known) return {0, 0};
-    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
-    const Point<double> middle = to_film<dimensions>(at.cosine, at.sine, polygon.middle());
+  return data_->with_grid<double>([&](const auto& grid) -> Vec2<double> {
+    const PolygonAt polygon(grid, film, data_->known(wavelength));
+    if (!polygon.cell.known) return {0, 0};
+    const Point<double> middle = grid.chart.to_film(polygon.cell, polygon.middle());
     return {middle.x, middle.y};
   });
 }
 
 double FilmPupilTable::sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) {
-    return images->contains(film, x, y, wavelength) ? images->area(film, wavelength) : 0;
-  }
-  return data_->with_grid<double>([&](const auto& grid, const auto& loops) {
-    return loops.area_of_one(grid, film.x, film.y, x, y, data_->known(wavelength));
+  if (const auto& images = data_->images) return images->sample_area(film, x, y, wavelength);
+  return data_->with_grid<double>([&](const auto& grid) {
+    const PolygonAt polygon(grid, film, data_->known(wavelength));
+    if (!polygon.cell.known || !std::isfinite(x + y)) return 0.0;
+    if (polygon.samples_iris()) return area_in_iris<double>(grid, polygon.cell, {x, y});
+    return polygon.with_kind([&](auto obscured, auto stopped) {
+      return locate<obscured.value, stopped.value, double>(grid, polygon.cell, {x, y}).area;
+    });
   });
 }
 
@@ -182,17 +201,12 @@ void FilmPupilTable::sample_areas(std::size_t count, const TwoPlaneRays<const T>
         sample_area({lines.film_x[0], lines.film_y[0]}, lines.pupil_x[0], lines.pupil_y[0], wavelengths.at(0)));
     return;
   }
-  if (data_->images) {
-    data_->images->sample_areas(count, lines, wavelengths, areas);
-    return;
-  }
-  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
-    data_->with_grid<T>([&](const auto& grid, const auto&) {
-      const auto [film_x, film_y, x, y] = lines.from(o);
-      const auto& loops = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
-      loops.areas(grid, n, film_x, film_y, x, y, known, areas + o);
-    });
-  });
+  data_->with_table<T>(
+      count, wavelengths, [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
+        const T* const from[] = {lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o};
+        T* const to[] = {areas + o};
+        film_loops().of<std::decay_t<decltype(table)>>().areas(table, n, from, known, to);
+      });
 }
 
 template <class T>
@@ -210,21 +224,20 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
 template <class T>
 void FilmPupilTable::stop_points(std::size_t count, const TwoPlaneRays<const T>& lines,
                                  const RayWavelengths& wavelengths, T* x, T* y) const noexcept {
-  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
-    data_->with_grid<T>([&](const auto& grid, const auto& loops) {
-      const auto [film_x, film_y, pupil_x, pupil_y] = lines.from(o);
-      loops.template of<T>().stop_points(grid, n, film_x, film_y, pupil_x, pupil_y, known, x + o, y + o);
-    });
-  });
+  data_->with_table<T>(
+      count, wavelengths, [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
+        const T* const from[] = {lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o};
+        T* const to[] = {x + o, y + o};
+        const auto& loops = film_loops().of<std::decay_t<decltype(table)>>();
+        if (loops.stop_points) loops.stop_points(table, n, from, known, to);
+      });
 }
 
 double FilmPupilTable::sampled_iris_scale(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (!data_->stop) return 0;
-  return data_->with_grid<double>([&](const auto& grid, const auto&) {
-    using S = StopLayout<std::decay_t<decltype(grid)>::dimensions>;
-    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
-    const double* stop = grid.stop.cells + at.cell * S::size;
-    return at.known && stop[S::samples_iris] > 0 ? stop[S::scale] : 0.0;
+  return data_->with_grid<double>([&](const auto& grid) {
+    const PolygonAt polygon(grid, film, data_->known(wavelength));
+    return polygon.cell.known && polygon.samples_iris() ? stop_at<double>(grid, polygon.cell).scale() : 0.0;
   });
 }
 
@@ -238,51 +251,35 @@ void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const doub
     return;
   }
   const std::int32_t position = data_->known(wavelength);
-  data_->with_grid<double>([&](const auto& grid, const auto&) {
-    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
+  data_->with_grid<double>([&](const auto& grid) {
     std::size_t sector = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [at, polygon] = find(grid, {lines.film_x[i], lines.film_y[i]}, position);
-      const Point<double> in_grid =
-          to_grid<dimensions>(at.cosine, at.sine, Point<double>{lines.pupil_x[i], lines.pupil_y[i]});
-      clearances[i] = at.known ? clearance_at(polygon, in_grid - polygon.middle(), sector) : -1;
+      const PolygonAt polygon(grid, {lines.film_x[i], lines.film_y[i]}, position);
+      const Point<double> q = polygon.to_grid(lines.pupil_x[i], lines.pupil_y[i]);
+      clearances[i] = polygon.cell.known ? clearance_at(polygon, q, sector) : -1;
     }
   });
 }
 
 Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->position(film, x, y, wavelength);
-  return data_->with_grid<double>([&](const auto& grid, const auto& loops) -> Vec2<double> {
-    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
-    using S = StopLayout<dimensions>;
-    const std::int32_t known = data_->known(wavelength);
-    const auto [at, polygon] = find(grid, film, known);
-    const double total_area = polygon.total_area();
-    if (!at.known || !(total_area > 0)) return {0, 2};
-    const double* stop = grid.stop.cells ? grid.stop.cells + at.cell * S::size : nullptr;
-    if (stop && stop[S::samples_iris] > 0) {
-      double stop_x = 0, stop_y = 0;
-      loops.template of<double>().stop_points(grid, 1, &film.x, &film.y, &x, &y, {static_cast<std::size_t>(known)},
-                                              &stop_x, &stop_y);
-      return data_->stop->shape.position(stop_x / stop[S::scale], stop_y / stop[S::scale]);
+  return data_->with_grid<double>([&](const auto& grid) -> Vec2<double> {
+    const PolygonAt polygon(grid, film, data_->known(wavelength));
+    const auto& cell = polygon.cell;
+    if (!cell.known) return {0, 2};
+    if (polygon.samples_iris()) {
+      const auto p = stop_point<double>(grid, cell, stop_at<double>(grid, cell), {x, y});
+      return data_->stop->shape.position(p.x, p.y);
     }
-    const Point<double> q = to_grid<dimensions>(at.cosine, at.sine, Point<double>{x, y}) - polygon.middle();
-    const std::size_t k = sector_towards(polygon, q);
-    if (k == polygon_corners) return {0, 2};
-    const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
-    const double along = sector.along_to(q), radius = sector.relative_radius(q);
-    const double fraction = (polygon.area_before(static_cast<std::int32_t>(k)) + along * sector.area()) / total_area;
-    double v = sector.fraction_within(radius * radius);
-    if (stop) {
-      const Point<double> edge = sector.at(1, along);
-      const CellPositions<1, double> positions{{at.t}, {at.s}, {at.cosine}, {at.sine}, {1}, {at.cell}};
-      Lines<1, double> line{{static_cast<std::int32_t>(k)}, {along}, {edge.x}, {edge.y}, {0}, {1}};
-      clip_by_iris<1>(grid, positions, line);
-      const double first = sector.fraction_within(line.from[0] * line.from[0]);
-      const double last = sector.fraction_within(line.to[0] * line.to[0]);
-      v = last > first && v >= first ? (v - first) / (last - first) : 2;
-    }
-    return {polygon.u_of(fraction, total_area, at.cosine, at.sine), v};
+    return polygon.with_kind([&](auto obscured, auto stopped) -> Vec2<double> {
+      const auto at = locate<obscured.value, stopped.value, double>(grid, cell, {x, y});
+      const Sector<double>& sector = at.line.sector;
+      if (!sector.faces(polygon.to_grid(x, y))) return {0, 2};
+      const auto [first, last] = at.part;
+      const double own = sector.fraction_within(at.squared_radius);
+      const double v = !stopped.value ? own : last > first && own >= first ? (own - first) / (last - first) : 2;
+      return {grid.chart.u_of(cell, (at.line.k + at.line.along) / static_cast<double>(polygon_corners)), v};
+    });
   });
 }
 
@@ -293,8 +290,7 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
   if (const auto& images = data_->images) {
     by = images->derivatives(film, result, wavelength);
   } else if (result.area > 0) {
-    data_->with_grid<double>(
-        [&](const auto& grid, const auto&) { by = motion_of_middle(grid, film, data_->known(wavelength)); });
+    data_->with_grid<double>([&](const auto& grid) { by = motion_of_middle(grid, film, data_->known(wavelength)); });
   }
   return result;
 }

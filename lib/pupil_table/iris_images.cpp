@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "film_loops.hpp"
+
 namespace petzval::pupil_table_detail {
 namespace {
 
@@ -44,7 +46,7 @@ IrisImages IrisImages::with_round_stop() const {
 }
 
 template <class R>
-SeenIris<R> IrisImages::seen() const noexcept {
+IrisImageTable<R> IrisImages::seen() const noexcept {
   return {shape_.sectors<R>(), static_cast<R>(film_radius_ * rounded_up), static_cast<R>(slope_x_),
           static_cast<R>(slope_y_)};
 }
@@ -52,13 +54,12 @@ SeenIris<R> IrisImages::seen() const noexcept {
 template <class R>
 IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };
-  const Image shared = image(all);
-  return {seen<R>(),
-          between_.rows<R>(),
-          equal_sections_,
-          {number(shared.shift_x), number(shared.shift_y), number(shared.radius_x), number(shared.radius_y),
-           number(shared.area)},
-          number(shape_.area())};
+  const auto [shift_x, shift_y, radius_x, radius_y, area] = image(all);
+  IrisImageTable<R> result = seen<R>();
+  result.images = between_.rows<R>(), result.equal_sections = equal_sections_;
+  result.image = {number(shift_x), number(shift_y), number(radius_x), number(radius_y), number(area)};
+  result.area = number(shape_.area());
+  return result;
 }
 
 IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
@@ -72,13 +73,15 @@ IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
 }
 
 IrisImages::Image IrisImages::image(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  const double reach = film_radius_ * rounded_up, square = film.x * film.x + film.y * film.y;
-  if (!(square <= reach * reach)) return {};
-  return on_tilted(image(wavelength), slope_x_ * film.x + slope_y_ * film.y);
+  return image_at(seen<double>(), image(wavelength), film.x, film.y, true);
 }
 
 PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
-  return iris_images().one(seen<double>(), image(wavelength), film.x, film.y, u, v);
+  return film_loops().image_sample(seen<double>(), image(wavelength), film.x, film.y, u, v);
+}
+
+double IrisImages::sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  return area_in_image(seen<double>(), image(wavelength), film.x, film.y, x, y);
 }
 
 double IrisImages::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
@@ -93,12 +96,6 @@ Vec2<double> IrisImages::middle(const FilmPoint& film, Wavelength wavelength) co
   const Image seen = image(film, wavelength);
   if (!(seen.area > 0)) return {0, 0};
   return {seen.shift_x * film.x, seen.shift_y * film.y};
-}
-
-bool IrisImages::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  const Image seen = image(film, wavelength);
-  return seen.area > 0 &&
-         shape_.contains((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
 }
 
 Vec2<double> IrisImages::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
@@ -117,25 +114,7 @@ FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, const
           {-seen.shift_x * slope_y_ * x, seen.shift_y - seen.shift_y * slope_y_ * y}};
 }
 
-template <class T>
-void IrisImages::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
-                        const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
-  iris_images().of<T>().sample(table<T>(wavelengths.all), count, film_x, film_y, u, v, wavelengths, x, y, areas);
-}
-
-template <class T>
-void IrisImages::sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                              T* areas) const noexcept {
-  iris_images().of<T>().sample_areas(table<T>(wavelengths.all), count, lines, wavelengths, areas);
-}
-
-#define PETZVAL_IRIS_IMAGES(T)                                                                                         \
-  template void IrisImages::sample(std::size_t, const T*, const T*, const T*, const T*, const RayWavelengths&, T*, T*, \
-                                   T*) const noexcept;                                                                 \
-  template void IrisImages::sample_areas(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, T*)         \
-      const noexcept;
-PETZVAL_IRIS_IMAGES(float)
-PETZVAL_IRIS_IMAGES(double)
-#undef PETZVAL_IRIS_IMAGES
+template IrisImageTable<float> IrisImages::table(Wavelength) const noexcept;
+template IrisImageTable<double> IrisImages::table(Wavelength) const noexcept;
 
 }  // namespace petzval::pupil_table_detail

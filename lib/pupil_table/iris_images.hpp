@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "iris/iris_shape.hpp"
-#include "iris_images_loops.hpp"
+#include "iris_image_kernel.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "pupil_table/film_pupil_table.hpp"
 
@@ -42,18 +42,15 @@ class IrisImages {
   /// Area of the image of the unclipped stop.
   double area_of_stop(const FilmPoint& film, Wavelength wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
-  bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
+  double sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   /// Derivatives of a sample of these pupils.
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, const PupilSample& sample,
                                           Wavelength wavelength) const noexcept;
 
-  template <class T>
-  void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
-              const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
-  template <class T>
-  void sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                    T* areas) const noexcept;
+  /// @param all the common wavelength of all rays
+  template <class R>
+  IrisImageTable<R> table(Wavelength all) const noexcept;
 
  private:
   using Image = ImageSections<double>;
@@ -61,11 +58,9 @@ class IrisImages {
   Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
   /// The image at a wavelength, seen from the axis.
   Image image(Wavelength wavelength) const noexcept;
+  /// The table without wavelengths.
   template <class R>
-  SeenIris<R> seen() const noexcept;
-  /// @param all the common wavelength of all rays
-  template <class R>
-  IrisImageTable<R> table(Wavelength all) const noexcept;
+  IrisImageTable<R> seen() const noexcept;
 
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "polygon_grid.hpp"
+#include "pupil_table/sector.hpp"
 
 /// Positions in the polygon of one film point, in double.
 namespace petzval::pupil_table_detail {
@@ -18,7 +18,7 @@ std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
   std::size_t low = 0, high = polygon_corners;
   while (high - low > 1) {
     const std::size_t k = (low + high) / 2;
-    const Point<double> corner = polygon.corner(static_cast<std::int32_t>(k));
+    const Point<double> corner = polygon.corner(k);
     const bool own_half = turn(first, corner) >= 0;
     (own_half == first_half ? turn(corner, q) >= 0 : own_half) ? low = k : high = k;
   }
@@ -29,19 +29,19 @@ std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
 template <class Polygon>
 std::size_t sector_towards(const Polygon& polygon, const Point<double>& q) {
   return sector_facing(
-      q, [&](std::size_t k) { return polygon.sector(static_cast<std::int32_t>(k)); }, corner_before(polygon, q));
+      q, [&](std::size_t k) { return polygon.sector(k); }, corner_before(polygon, q));
 }
 
 /// Clearance as in FilmPupilTable::clearances().
 /// @param facing on input, the first sector to try; on output, the sector that faces the position
 template <class Polygon>
 double clearance_at(const Polygon& polygon, const Point<double>& q, std::size_t& facing) {
-  Sector<double> sector = polygon.sector(static_cast<std::int32_t>(facing));
+  Sector<double> sector = polygon.sector(facing);
   if (!sector.faces(q)) {
     const std::size_t k = sector_towards(polygon, q);
     if (k == polygon_corners) return -1;
     facing = k;
-    sector = polygon.sector(static_cast<std::int32_t>(k));
+    sector = polygon.sector(k);
   }
   constexpr double farthest = 1e150;  // its square is finite
   const double radius = std::min(sector.relative_radius(q), farthest), squared = radius * radius;
@@ -51,21 +51,6 @@ double clearance_at(const Polygon& polygon, const Point<double>& q, std::size_t&
     least = std::min(least, std::max(inner, outer));
   }
   return least < 0 ? least / (1 - least) : least;
-}
-
-/// Largest difference, in sectors, between the sector expected for equal areas and the true sector; see
-/// PolygonGrid::corrections.
-template <class Polygon>
-int corrections_of(const Polygon& polygon) {
-  int corrections = 0;
-  const double total_area = polygon.total_area();
-  for (std::size_t k = 0; total_area > 0 && k < polygon_corners; ++k) {
-    const double fraction = polygon.area_before(static_cast<std::int32_t>(k)) / total_area;
-    const double off = std::abs(polygon.expected(fraction, total_area) - static_cast<double>(k));
-    constexpr double max_corrections = 64;
-    if (off > 0.49) corrections = std::max(corrections, static_cast<int>(std::min(std::ceil(off), max_corrections)));
-  }
-  return corrections;
 }
 
 }  // namespace petzval::pupil_table_detail

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pupil/pupil_region.hpp"
+#include "pupil_grid.hpp"
 
 namespace petzval::pupil_table_detail {
 namespace {
@@ -163,6 +164,28 @@ void match_area(PupilPolygon& polygon, const PupilRegion& region, double outer_a
 
 }  // namespace
 
+PupilPolygon PupilPolygon::of(const double* node) noexcept {
+  PupilPolygon result;
+  const auto pair = [node](std::size_t at) { return Vec2<double>{node[at], node[at + 1]}; };
+  result.middle = pair(NodeLayout::middle);
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    result.corners[k] = pair(NodeLayout::corners + 2 * k);
+    const Vec2<double> interval = pair(NodeLayout::obscured + 2 * k);
+    result.obscured_from[k] = interval.x, result.obscured[k] = interval.y;
+  }
+  return result;
+}
+
+void PupilPolygon::append_to(std::vector<double>& nodes) const {
+  const auto put = [&nodes](double x, double y) { nodes.push_back(x), nodes.push_back(y); };
+  put(middle.x, middle.y);
+  for (std::size_t k = 0; k <= polygon_corners; ++k) {
+    const Vec2<double>& corner = corners[k % polygon_corners];
+    put(corner.x, corner.y);
+  }
+  for (std::size_t k = 0; k < polygon_corners; ++k) put(obscured_from[k], obscured[k]);
+}
+
 double PupilPolygon::area() const noexcept { return PolygonSampler(*this).area(); }
 
 void PupilPolygon::widen(double by) noexcept {
@@ -207,14 +230,22 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   const std::size_t n = edge.points.size();
   const auto point = [&](std::size_t i) -> const Position& { return edge.points[i % n]; };
 
-  // Corners at equal steps of area.
+  // Corners at equal steps of lit area, because all sectors get equal numbers of samples. Polygons with equal halves
+  // have no obscurations.
   std::vector<double> until{0};
-  for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
+  const auto lit_fraction = [&](std::size_t i) {
+    const double from = edge.obscured_from[i % n], to = edge.obscured_to[i % n];
+    return steps == CornerSteps::even && to > from ? 1 - (to * to - from * from) : 1.0;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double lit = (lit_fraction(i) + lit_fraction(i + 1)) / 2;
+    until.push_back(until.back() + lit * std::max(turn(point(i), point(i + 1)), 0.0));
+  }
   double right = until.back() / 2;  // area of the half at +x
   for (std::size_t i = 0; i < n; ++i) {
     const Position &a = point(i), &b = point(i + 1);
     if (steps == CornerSteps::even || !(a.x >= 0 && b.x < 0)) continue;
-    right = until[i] + turn(a, a + a.x / (a.x - b.x) * (b - a));
+    right = until[i] + a.x / (a.x - b.x) * (until[i + 1] - until[i]);
     break;
   }
   const auto area_before = [&](std::size_t k) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "pupil/pupil_boundary.hpp"
 #include "pupil_table/sector.hpp"
@@ -20,6 +21,10 @@ struct PupilPolygon {
     const auto &a = corners[k], &b = corners[(k + 1) % polygon_corners];
     return {{a[0], a[1]}, {b[0], b[1]}, obscured_from[k], obscured[k]};
   }
+
+  /// The polygon of the numbers of a node (NodeLayout), and its inverse.
+  static PupilPolygon of(const double* node) noexcept;
+  void append_to(std::vector<double>& nodes) const;
 
   /// Area, mm^2.
   double area() const noexcept;

@@ -4,11 +4,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "core/widest.hpp"
-#include "polygon_grid.hpp"
+#include "pupil_table/pupil_grid.hpp"
 
 namespace petzval::pupil_table_detail {
 
@@ -31,13 +32,6 @@ struct SceneLayout {
     const auto bit = [j](std::size_t k) { return static_cast<std::int32_t>(j >> k & 1); };
     return dimensions == 2 ? bit(1) * layer + bit(0) : bit(2) * layer + bit(1) * row + bit(0);
   }
-};
-
-/// Numbers of one node. Corners are relative to the middle; corner 64 is corner 0.
-struct NodeLayout {
-  static constexpr std::int32_t middle = 0, corners = 2;
-  static constexpr std::int32_t obscured = corners + 2 * (static_cast<std::int32_t>(polygon_corners) + 1);
-  static constexpr std::int32_t size = obscured + 2 * static_cast<std::int32_t>(polygon_corners);
 };
 
 /// The nodes of all wavelengths, borrowed.
@@ -119,7 +113,7 @@ PETZVAL_INLINE double last_field(const double* widest, double distance, std::int
 }
 
 PETZVAL_INLINE Bearing bearing_of(double unit_x, double unit_y, double unit_z) noexcept {
-  const double across2 = unit_x * unit_x + unit_y * unit_y, sine = core_detail::square_root(across2);
+  const double across2 = unit_x * unit_x + unit_y * unit_y, sine = std::sqrt(across2);
   constexpr double whole_turn = 6.283185307179586;
   const bool off_axis = across2 > axis_r2<double>;
   const double per_sine = 1 / (off_axis ? sine : 1.0);
@@ -180,7 +174,7 @@ PETZVAL_INLINE void find_scene_cell_positions(const SceneGrid<dimensions>& grid,
     const auto bounded = [](double a) -> std::int32_t { return (a < 0 ? -a : a) <= farthest_point; };
     const std::int32_t sound = bounded(x[i]) & bounded(y[i]) & bounded(z[i]);
     const double px = sound ? x[i] : 0.0, py = sound ? y[i] : 0.0, pz = sound ? z[i] - grid.centre_z : 0.0;
-    const double r2 = px * px + py * py, distance = core_detail::square_root(r2 + pz * pz);
+    const double r2 = px * px + py * py, distance = std::sqrt(r2 + pz * pz);
     const double per_distance = 1 / (distance > 0 ? distance : 1.0), fraction = per_distance / grid.steepest;
     const Bearing bearing = bearing_of(px * per_distance, py * per_distance, pz * per_distance);
     // Points outside the front surface's rim may have fields of more than 90 degrees.
@@ -217,8 +211,8 @@ PETZVAL_INLINE RayToLens ray_to_lens(const Bearing& b, double distance, const Po
   const double per_distance = 1 / (distance > 0 ? distance : 1.0);
   const double dx = x * per_distance - b.azimuth_x * b.sine, dy = y * per_distance - b.azimuth_y * b.sine;
   const double dz = z * per_distance + b.cosine;
-  const double per_length = 1 / core_detail::square_root(dx * dx + dy * dy + dz * dz);
-  const double far2 = distance * distance + (p.x * p.x + p.y * p.y), far = core_detail::square_root(far2);
+  const double per_length = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
+  const double far2 = distance * distance + (p.x * p.x + p.y * p.y), far = std::sqrt(far2);
   return {x, y, z, dx * per_length, dy * per_length, dz * per_length, far, far2 * (far * per_distance)};
 }
 
@@ -283,12 +277,12 @@ PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const ScenePolygon<obscured, block, dimensions> polygon{grid.nodes, positions, i};
-    const double turn = core_detail::clamped(u[i]) * static_cast<double>(polygon_corners);
+    const double turn = clamped(u[i]) * static_cast<double>(polygon_corners);
     constexpr auto last = static_cast<std::int32_t>(polygon_corners - 1);
     const auto above = static_cast<std::int32_t>(turn);
     const std::int32_t k = above < last ? above : last;
     const Sector<double> sector = polygon.sector(k);
-    const double radius = core_detail::square_root(sector.squared_radius(core_detail::clamped(v[i])));
+    const double radius = std::sqrt(sector.squared_radius(clamped(v[i])));
     const Point<double> in_grid = polygon.middle() + sector.at(radius, turn - static_cast<double>(k));
     const RayToLens ray = polygon.ray(in_grid);
     // NaN unless u and v are finite: comparisons are then false, and there is no sample.

@@ -1,71 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
-/// Geometry of pupil polygons, for one polygon of a table and for loops over many polygons, in float, in double, or
-/// with derivatives.
+#include "core/scalar.hpp"
+#include "core/simd.hpp"
+
+/// Geometry of pupil polygons over a scalar: a double, a number with derivatives, or lanes.
 ///
 /// A polygon has a middle point and corners around it, in order from +y towards +x; sector k is the triangle between
 /// the middle and the corners k and k + 1. An interval of a sector may be obscured, between two lines parallel to its
-/// outer edge. The "way" of a point is its radial fraction: 0 at the middle and 1 at the outer edge. Samples (u, v) are
-/// uniform by area: u selects the sector and the position along its edge, v the squared relative radius.
+/// outer edge. Samples (u, v) are uniform in each sector: u selects the sector and the position along its edge, v the
+/// squared relative radius, which is 0 at the middle and 1 at the outer edge.
 namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
 
+using kernel::select;
+using std::sqrt;
+
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-template <class T>
+template <class V>
 struct Point {
-  T x{}, y{};
+  V x{}, y{};
 
-  friend inline Point operator+(const Point& a, const Point& b) noexcept { return {a.x + b.x, a.y + b.y}; }
-  friend inline Point operator-(const Point& a, const Point& b) noexcept { return {a.x - b.x, a.y - b.y}; }
-  friend inline Point operator*(const T& s, const Point& a) noexcept { return {s * a.x, s * a.y}; }
+  friend PETZVAL_INLINE Point operator+(const Point& a, const Point& b) noexcept { return {a.x + b.x, a.y + b.y}; }
+  friend PETZVAL_INLINE Point operator-(const Point& a, const Point& b) noexcept { return {a.x - b.x, a.y - b.y}; }
+  friend PETZVAL_INLINE Point operator*(const V& s, const Point& a) noexcept { return {s * a.x, s * a.y}; }
 };
 
 /// Twice the area of the triangle from the middle to a and b; positive in the order of corners.
-template <class T>
-inline T turn(const Point<T>& a, const Point<T>& b) noexcept {
+template <class V>
+PETZVAL_INLINE V turn(const Point<V>& a, const Point<V>& b) noexcept {
   return b.x * a.y - a.x * b.y;
 }
 
-template <class T>
-struct Sector {
-  Point<T> a, b;              ///< the corners, relative to the middle
-  T obscured_from, obscured;  ///< begin and width of the obscured interval of squared relative radii
+template <class V>
+PETZVAL_INLINE V lesser(const V& a, const V& b) noexcept {
+  return select(a < b, a, b);
+}
+template <class V>
+PETZVAL_INLINE V greater(const V& a, const V& b) noexcept {
+  return select(a > b, a, b);
+}
+/// x clamped to [0, 1]; 0 for NaN.
+template <class V>
+PETZVAL_INLINE V clamped(const V& x) noexcept {
+  return lesser(greater(x, V(0)), V(1));
+}
+/// x, or 1 unless x is positive: a denominator.
+template <class V>
+PETZVAL_INLINE V positive_or_one(const V& x) noexcept {
+  return select(x > V(0), x, V(1));
+}
 
-  T area() const noexcept { return T(0.5) * turn(a, b) * (T(1) - obscured); }
+template <class V>
+struct Sector {
+  Point<V> a, b;              ///< the corners, relative to the middle
+  V obscured_from, obscured;  ///< begin and width of the obscured interval of squared relative radii
+
+  PETZVAL_INLINE V area() const noexcept { return V(0.5f) * turn(a, b) * (V(1) - obscured); }
+  /// Area that a sample of this sector represents, because all sectors get equal numbers of samples.
+  PETZVAL_INLINE V sampled_area() const noexcept { return V(static_cast<float>(polygon_corners)) * area(); }
 
   /// Squared relative radius of a sample.
-  T squared_radius(const T& v) const noexcept {
-    const T within = (T(1) - obscured) * v;
-    return within < obscured_from ? within : T(within + obscured);
+  PETZVAL_INLINE V squared_radius(const V& v) const noexcept {
+    const V within = (V(1) - obscured) * v;
+    return select(within < obscured_from, within, V(within + obscured));
   }
   /// Inverse of squared_radius(): v of a squared relative radius; inside the obscured interval, v at its begin.
-  T fraction_within(const T& squared_radius) const noexcept {
-    const T past = squared_radius - obscured > obscured_from ? squared_radius - obscured : obscured_from;
-    const T left = T(1) - obscured;
-    return (squared_radius < obscured_from ? squared_radius : past) / (left > T(0) ? left : T(1));
+  PETZVAL_INLINE V fraction_within(const V& squared_radius) const noexcept {
+    const V past = greater(V(squared_radius - obscured), obscured_from);
+    return select(squared_radius < obscured_from, squared_radius, past) / positive_or_one(V(V(1) - obscured));
   }
   /// Position at a relative radius and at a fraction of the outer edge, from a (0) to b (1).
-  Point<T> at(const T& radius, const T& along) const noexcept {
+  PETZVAL_INLINE Point<V> at(const V& radius, const V& along) const noexcept {
     return {radius * (a.x + along * (b.x - a.x)), radius * (a.y + along * (b.y - a.y))};
   }
 
   /// True if the position lies between the lines from the middle through the corners.
-  bool faces(const Point<T>& q) const noexcept { return turn(a, q) >= T(0) && turn(q, b) >= T(0) && turn(a, b) > T(0); }
-  /// Relative radius of a position that the sector faces.
-  T relative_radius(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
-  /// Fraction along the outer edge, from a (0) to b (1), where the line from the middle through q crosses it.
-  T along_to(const Point<T>& q) const noexcept {
-    const T before = turn(a, q), after = turn(q, b);
-    return before + after > T(0) ? before / (before + after) : T(0);
+  PETZVAL_INLINE auto faces(const Point<V>& q) const noexcept {
+    return (turn(a, q) >= V(0)) & (turn(q, b) >= V(0)) & (turn(a, b) > V(0));
   }
-  bool obscures(const T& squared_radius) const noexcept {
-    return squared_radius >= obscured_from && squared_radius < obscured_from + obscured;
+  /// Relative radius of a position that the sector faces.
+  PETZVAL_INLINE V relative_radius(const Point<V>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
+  /// Fraction along the outer edge, from a (0) to b (1), where the line from the middle through q crosses it.
+  PETZVAL_INLINE V along_to(const Point<V>& q) const noexcept {
+    const V before = turn(a, q), both = before + turn(q, b);
+    return select(both > V(0), V(before / positive_or_one(both)), V(0));
+  }
+  PETZVAL_INLINE auto obscures(const V& squared_radius) const noexcept {
+    return (squared_radius >= obscured_from) & (squared_radius < obscured_from + obscured);
   }
 };
 

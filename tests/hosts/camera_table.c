@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   size = fread(table, sizeof table[0], sizeof table / sizeof table[0], file);
   fclose(file);
   if (!pz_valid(table, (int)size)) {
-    fprintf(stderr, "%s: must be a complete table of format %d\n", argv[1], PZ_FORMAT);
+    fprintf(stderr, "%s: must be a complete table of format %d, made by petzval export LENS --camera FILE\n", argv[1],
+            PZ_FORMAT);
     return 2;
   }
   begin = clock();

@@ -31,23 +31,21 @@ class Table:
         return int(self.t[self.at[name]])
 
     def pupil(self, film, u, v):
-        """A point of the pupil of a film point, and the area of the pupil."""
+        """A point of the pupil of a film point, and the area that the sample represents."""
         r = math.hypot(*film)
         place = r * self.t[self.at["rows_per_mm"]]
         row = min(int(place), self.whole("pupil_rows") - 1)
         t = place - row
-        cell = self.t[self.whole("cells") + row * self.whole("cell_size"):][:self.whole("cell_size")]
-        corners = cell[8:528].reshape(65, 8)
-        x, y = corners[:, 0] + t * corners[:, 1], corners[:, 2] + t * corners[:, 3]
-        before = corners[:, 4:] @ [1, t, t * t, t ** 3]
-        area = cell[4:8] @ [1, t, t * t, t ** 3]
+        size = self.whole("film_node_size")
+        near, far = self.t[self.whole("film_nodes") + row * size:][:2 * size].reshape(2, size)
+        node = near + t * (far - near)
+        corners = node[2:132].reshape(65, 2)
         sine, cosine = (film[0] / r, film[1] / r) if r > 0 else (0, 1)
-        target = (u - math.atan2(sine, cosine) / (2 * math.pi)) % 1 * area
-        k = min(int(numpy.searchsorted(before[1:], target)), 63)
-        along = (target - before[k]) / (before[k + 1] - before[k])
-        px = math.sqrt(v) * (x[k] + along * (x[k + 1] - x[k]))
-        py = cell[2] + t * cell[3] + math.sqrt(v) * (y[k] + along * (y[k + 1] - y[k]))
-        return numpy.array([cosine * px + sine * py, cosine * py - sine * px]), area
+        turns = (u - math.atan2(sine, cosine) / (2 * math.pi)) % 1 * 64
+        k = min(int(turns), 63)
+        a, b = corners[k], corners[k + 1]
+        px, py = node[:2] + math.sqrt(v) * (a + (turns - k) * (b - a))
+        return numpy.array([cosine * px + sine * py, cosine * py - sine * px]), 32 * (b[0] * a[1] - a[0] * b[1])
 
     def sag(self, surface, u):
         c, e, aspheric = surface[2], surface[3], int(surface[10])
@@ -109,7 +107,7 @@ for name in ("double_gauss_100mm_f2.0", "phone_5.6mm_f3.5", "retrofocus_100mm_f2
             named = json.load(file)
         numbers = numpy.fromfile(os.path.join(folder, "t.bin"), "<f4")
     failures += not numpy.array_equal(numbers, numpy.array(named["table"], "f4"))
-    failures += numbers[0] != 5 or numbers[1] != len(numbers)
+    failures += numbers[0] != 6 or numbers[1] != len(numbers)
     defined = {n.lower(): int(p) for n, p in re.findall(r"#define PZ_([A-Z_]+) (\d+)", open(header).read())}
     failures += any(defined.get(n, p) != p for n, p in named["positions"].items() if n != "format")
     table = Table(named["positions"], numbers)

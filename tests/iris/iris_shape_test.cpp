@@ -191,8 +191,7 @@ TEST(IrisShape, FloatEqualsDouble) {
     const IrisShape shape(iris);
     for (std::uint32_t i = 0; i < 2000; ++i) {
       const auto [u, v] = core_detail::Kronecker<2>(8)(i);
-      const auto [x, y] =
-          iris_detail::sector_point(shape.sectors<float>(), static_cast<float>(u), static_cast<float>(v));
+      const auto [x, y] = iris_detail::iris_point(shape.sectors<float>(), static_cast<float>(u), static_cast<float>(v));
       const Vec2<double> p = shape.sample(static_cast<float>(u), static_cast<float>(v));
       EXPECT_NEAR(x, p.x, 2e-6) << text(iris) << " " << u;
       EXPECT_NEAR(y, p.y, 2e-6) << text(iris) << " " << u;

@@ -227,7 +227,8 @@ TEST(PolynomialFit, RotatesWithTheCylinders) {
     const RayPolynomial one = RayPolynomial::fit(lens, pupils, degree);
     const RayPolynomial other = RayPolynomial::fit(turned, turned_pupils, degree);
     const RayPolynomial::Fit &a = one.fits()[0], &b = other.fits()[0];
-    EXPECT_NEAR(b.rms_rad, a.rms_rad, 0.1 * a.rms_rad);
+    // Both halves of a pupil, at +x and at -x, get equal numbers of samples; turned pupils have other halves.
+    EXPECT_NEAR(b.rms_rad, a.rms_rad, 0.15 * a.rms_rad);
     lines.through(one), about.through(other);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (about.fates[i] != RayFate::transmitted) continue;  // on the rim

@@ -118,10 +118,10 @@ TEST(FilmCells, QuadrantsOfTheFilmAreEqual) {
                       below = table.sample({film.x, -film.y}, u, v);
     EXPECT_NEAR(left.x, -s.x, 1e-9);
     EXPECT_NEAR(left.y, s.y, 1e-9);
+    EXPECT_EQ(left.area, s.area);
     // As u starts at +y, the mirror image of a pupil without symmetry in x has other samples.
     EXPECT_TRUE(table.contains(film, below.x, -below.y)) << v;
-    EXPECT_EQ(left.area, s.area);
-    EXPECT_EQ(below.area, s.area);
+    EXPECT_EQ(table.polygon_area({film.x, -film.y}), table.polygon_area(film));
     EXPECT_TRUE(table.contains({-film.x, film.y}, left.x * (1 - 1e-9), left.y)) << v;
   }
 }
@@ -142,7 +142,10 @@ TEST(FilmCells, ContinuousOverTheFilm) {
           const PupilSample now = at(-10 + 20.0 * i / steps);
           ASSERT_GT(now.area, 0);
           EXPECT_LT(std::hypot(now.x - before.x, now.y - before.y), 0.02) << u << ' ' << across << " step " << i;
-          EXPECT_LT(std::abs(now.area - before.area), 2e-3 * now.area);
+          // At the border of two sectors the area is that of either.
+          if (u != 0 && u != 0.5) {
+            EXPECT_LT(std::abs(now.area - before.area), 2e-3 * now.area);
+          }
           before = now;
         }
       }

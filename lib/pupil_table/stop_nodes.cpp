@@ -4,7 +4,7 @@
 // them. At film points without vignetting they map samples of the iris to the pupil. At other film points the iris
 // clips the straight lines of the polygon's samples; at the stop, such a line is nearly straight from the stop point of
 // the middle to that of the edge.
-#include "stop_cells.hpp"
+#include "stop_nodes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +16,7 @@
 #include "film_pupil_data.hpp"
 #include "lens/lens_view.hpp"
 #include "petzval/core/parallel.hpp"
+#include "pupil_kernel.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval {
@@ -26,10 +27,10 @@ using Position = Point<double>;
 
 constexpr double unlimited = 1e6;  // scale of an iris that clips no rays
 
-/// StopLayout::map of a node, not of a cell, and its error in semi-diameters.
-template <int dimensions>
+/// StopLayout::map of a node, and its error in semi-diameters.
+template <int terms>
 struct NodeMap {
-  std::array<double, StopLayout<dimensions>::terms> terms{};
+  std::array<double, terms> numbers{};
   bool known = false, samples_iris = false;
   double error = 0;       // largest error of stop(), in semi-diameters
   double line_error = 0;  // largest error of stop points on straight lines outwards
@@ -37,22 +38,22 @@ struct NodeMap {
   std::array<Position, polygon_corners> corners{};
 
   auto number() const noexcept {
-    return [this](int k) { return terms[static_cast<std::size_t>(k)]; };
+    return [this](int k) { return numbers[static_cast<std::size_t>(k)]; };
   }
-  SeenPoint<double> seen(const Position& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
+  SeenPoint<double> seen(const Position& stop) const noexcept { return seen_point<terms>(number(), stop); }
   /// The stop point whose image is `position`; nullopt if it is far from the iris.
   std::optional<Position> stop(const Position& position) const noexcept {
-    const StopSolution<double> found = solve_stop_point<dimensions>(number(), position);
+    const StopSolution<double> found = solve_stop_point<terms>(number(), position);
     constexpr double max_step2 = 1e-6;
     return found.step2 < max_step2 ? std::optional(found.point) : std::nullopt;
   }
 };
 
 /// Terms for the coordinate `axis` of a position (StopLayout), at a stop point.
-template <int dimensions>
+template <int terms>
 std::vector<double> products(int axis, const Position& stop) {
   const auto& [x, y] = stop;
-  if (dimensions == 2) return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
+  if (terms == 20) return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
   const double r = x * x + y * y;
   if (axis == 0) return {x, x * y, x * x * x, x * y * y, x * y * r, x * r * r};
   return {1, y, x * x, y * y, x * x * y, y * y * y, r * r, r * y * y, r * r * y};
@@ -65,22 +66,22 @@ struct StopSample {
   double radius = 0;  ///< fraction of the line
 };
 
-template <int dimensions>
-void fit(NodeMap<dimensions>& map, std::span<const StopSample> samples) {
+template <int terms>
+void fit(NodeMap<terms>& map, std::span<const StopSample> samples) {
   const auto count = static_cast<Eigen::Index>(samples.size());
   for (const int axis : {0, 1}) {
-    const std::size_t terms = products<dimensions>(axis, {}).size();
-    Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(terms));
+    const std::size_t columns = products<terms>(axis, {}).size();
+    Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(columns));
     Eigen::VectorXd values(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const StopSample& sample = samples[static_cast<std::size_t>(i)];
-      const std::vector<double> of = products<dimensions>(axis, sample.stop);
-      for (std::size_t k = 0; k < terms; ++k) rows(i, static_cast<Eigen::Index>(k)) = of[k];
+      const std::vector<double> of = products<terms>(axis, sample.stop);
+      for (std::size_t k = 0; k < columns; ++k) rows(i, static_cast<Eigen::Index>(k)) = of[k];
       values(i) = axis == 0 ? sample.position.x : sample.position.y;
     }
     const Eigen::VectorXd solution = core_detail::least_squares(rows, values);
-    const std::size_t first = dimensions == 2 ? (axis == 0 ? 0 : 10) : (axis == 0 ? 9 : 0);
-    std::copy_n(solution.begin(), terms, map.terms.begin() + static_cast<std::ptrdiff_t>(first));
+    const std::size_t first = terms == 20 ? (axis == 0 ? 0 : 10) : (axis == 0 ? 9 : 0);
+    std::copy_n(solution.begin(), columns, map.numbers.begin() + static_cast<std::ptrdiff_t>(first));
   }
 }
 
@@ -100,10 +101,10 @@ void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const dou
 
 double distance(const Position& a, const Position& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-template <int dimensions>
-NodeMap<dimensions> fit_node_map(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
-                                 std::size_t wavelength) {
-  NodeMap<dimensions> map;
+template <int terms>
+NodeMap<terms> fit_node_map(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
+                            std::size_t wavelength) {
+  NodeMap<terms> map;
   std::vector<StopSample> samples;
   const auto take = [&](std::size_t k, double radius, const Position& position) {
     const auto stop = stop_of(film, {position.x, position.y}, wavelength);
@@ -115,7 +116,7 @@ NodeMap<dimensions> fit_node_map(const StopOf& stop_of, const FilmPoint& film, c
   for_rays(polygon, 2, radii, take);
   constexpr std::size_t min_samples = 24;
   if (samples.size() < min_samples) return map;
-  fit<dimensions>(map, samples);
+  fit<terms>(map, samples);
   const auto middle = map.stop({polygon.middle.x, polygon.middle.y});
   if (!middle) return map;
   map.middle = *middle;
@@ -136,8 +137,8 @@ NodeMap<dimensions> fit_node_map(const StopOf& stop_of, const FilmPoint& film, c
 }
 
 /// True if the image of the iris lies within the polygon. If `enclosing`, the image may exceed the polygon slightly.
-template <int dimensions>
-bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
+template <int terms>
+bool whole_iris_within(const NodeMap<terms>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
                        bool enclosing) {
   constexpr int azimuths = 48;
   constexpr double rim_fraction = 0.97;  // fraction of the area
@@ -145,12 +146,13 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
   std::size_t facing = 0;
   int within = 0, all = 0;
   // Film points of a lens of revolution see the iris at any rotation.
-  const int turns = dimensions == 1 && !shape.round() ? 2 : 1;
+  const int turns = terms == 15 && !shape.round() ? 2 : 1;
   for (int turned = 0; turned < turns; ++turned) {
     const double angle = turned * std::numbers::pi / std::max(shape.iris().blades, 1);
     for (int i = 0; i < azimuths; ++i, ++all) {
       const Vec2<double> p = shape.sample((i + 0.5) / azimuths, rim_fraction);
-      const Position stop = to_grid<1>(std::cos(angle), std::sin(angle), Position{p.x, p.y});
+      const double cosine = std::cos(angle), sine = std::sin(angle);
+      const Position stop{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
       const Position q = map.seen(stop).position - Position{polygon.middle.x, polygon.middle.y};
       const std::size_t found = sector_facing(q, sectors, facing);
       if (found == polygon_corners) continue;
@@ -163,9 +165,9 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
 }
 
 /// Error of the stop points at the centre of a cell.
-template <int dimensions>
+template <int terms>
 double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
-                       const NodeMap<dimensions>& map, std::size_t wavelength) {
+                       const NodeMap<terms>& map, std::size_t wavelength) {
   double error = 0;
   constexpr std::array radii{0.97, 0.8};
   for_rays(polygon, 4, radii, [&](std::size_t, double, const Position& position) {
@@ -177,19 +179,19 @@ double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const Pupil
 }
 
 /// Mean of the terms of several maps; the other members stay unset.
-template <int dimensions>
-NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
-  NodeMap<dimensions> mean;
+template <int terms>
+NodeMap<terms> mean_of(std::span<const NodeMap<terms>* const> maps) {
+  NodeMap<terms> mean;
   const double radius = 1 / static_cast<double>(maps.size());
   for (const auto* map : maps) {
-    for (std::size_t k = 0; k < mean.terms.size(); ++k) mean.terms[k] += radius * map->terms[k];
+    for (std::size_t k = 0; k < mean.numbers.size(); ++k) mean.numbers[k] += radius * map->numbers[k];
   }
   return mean;
 }
 
 /// Largest change of stop points up to halfway to the next wavelength.
-template <int dimensions>
-double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
+template <int terms>
+double change_of(const NodeMap<terms>& map, const NodeMap<terms>& next, const PupilPolygon& polygon) {
   constexpr double step_fraction = 0.6;  // fraction of the step, with a margin for nonlinear changes
   constexpr std::array radii{0.95};
   double change = 0;
@@ -200,106 +202,135 @@ double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next
   return change;
 }
 
-/// Makes a cell.
-/// @param samples_iris StopLayout::samples_iris
-template <int dimensions>
-std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool samples_iris, double scale) {
-  using S = StopLayout<dimensions>;
-  std::vector<double> cell(S::size);
-  cell[S::scale] = scale;
+/// Adds the numbers of a node (StopLayout).
+template <int terms>
+void put_node(std::vector<double>& to, const NodeMap<terms>& map, bool samples_iris, double scale) {
+  using L = StopLayout<terms>;
+  std::vector<double> node(L::size);
+  const auto number = [&node](std::int32_t k) -> double& { return node[static_cast<std::size_t>(k)]; };
+  number(L::scale) = scale;
   if (scale == unlimited) {  // stop points far outside the rim
-    for (const std::int32_t k : dimensions == 1 ? std::array{1, 9} : std::array{1, 12})
-      cell[S::map + S::linear * k] = 1;
-    return cell;
+    for (const std::int32_t k : terms == 15 ? std::array{1, 9} : std::array{1, 12}) number(L::map + k) = 1;
+  } else {
+    number(L::samples_iris) = samples_iris ? 1 : 0;
+    std::copy(map.numbers.begin(), map.numbers.end(), node.begin() + L::map);
+    number(L::middle) = map.middle.x, number(L::middle + 1) = map.middle.y;
+    for (std::int32_t k = 0; k <= static_cast<std::int32_t>(polygon_corners); ++k) {
+      const Position& corner = map.corners[static_cast<std::size_t>(k) % polygon_corners];
+      number(L::corners + 2 * k) = corner.x, number(L::corners + 2 * k + 1) = corner.y;
+    }
   }
-  cell[S::samples_iris] = samples_iris ? 1 : 0;
-  const auto put = [&](std::int32_t position, const auto& number) {
-    const auto numbers = linear<dimensions>(at, number);
-    std::copy(numbers.begin(), numbers.end(), cell.begin() + position);
-  };
-  for (std::int32_t k = 0; k < S::terms; ++k) {
-    put(S::map + S::linear * k, [k](const auto& map) { return map.terms[static_cast<std::size_t>(k)]; });
-  }
-  put(S::middle, [](const auto& map) { return map.middle.x; });
-  put(S::middle + S::linear, [](const auto& map) { return map.middle.y; });
-  for (std::size_t k = 0; k <= polygon_corners; ++k) {
-    const std::int32_t position = S::corners + 2 * S::linear * static_cast<std::int32_t>(k);
-    put(position, [k](const auto& map) { return map.corners[k % polygon_corners].x; });
-    put(position + S::linear, [k](const auto& map) { return map.corners[k % polygon_corners].y; });
-  }
-  return cell;
+  to.insert(to.end(), node.begin(), node.end());
 }
 
-/// The cells of all wavelengths. Data: FilmPupilTable::Data.
-template <int dimensions, class Data>
-std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& shape, const StopOf& stop_of,
-                               int threads) {
-  using Map = NodeMap<dimensions>;
-  std::vector<std::vector<PupilPolygon>> polygons(data.wavelengths);
-  std::vector<std::vector<Map>> maps(data.wavelengths);
-  parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
-    for (std::size_t i = 0; i < data.nodes(); ++i) {
-      const PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
-      Map& map = maps[w].emplace_back(fit_node_map<dimensions>(stop_of, data.node_point(i), polygon, w));
+/// The stop at the nodes of one wavelength.
+/// @param cells the nodes of each cell
+template <int terms>
+class StopOfWavelength {
+ public:
+  using Map = NodeMap<terms>;
+  StopOfWavelength(std::span<const FilmPoint> points, std::span<const PupilPolygon> polygons, const StopOf& stop_of,
+                   std::size_t wavelength)
+      : points_(points), polygons_(polygons), stop_of_(stop_of), wavelength_(wavelength) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Map& map = maps.emplace_back(fit_node_map<terms>(stop_of, points[i], polygons[i], wavelength));
       // A node without a pupil uses the map of the previous node.
-      if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
-      map.samples_iris = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
+      if (!map.known && i > 0 && terms == 15 && !(polygons[i].area() > 0)) map = maps[i - 1];
+    }
+  }
+
+  /// Scale of the iris with which no ray of a cell is missed.
+  double scale(std::span<const std::size_t> cell, bool samples_iris) const {
+    PolygonWeights weights;
+    std::vector<const Map*> at;
+    FilmPoint middle;
+    const double part = 1 / static_cast<double>(cell.size());
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+      weights.polygons[k] = cell[k], weights.weights[k] = part;
+      at.push_back(&maps[cell[k]]);
+      middle.x += part * points_[cell[k]].x, middle.y += part * points_[cell[k]].y;
+    }
+    double error = error_in_middle(stop_of_, middle, interpolated(polygons_, weights), mean_of<terms>(at), wavelength_);
+    // Fraction of the line error that remains after the second pass of clipping.
+    constexpr double remaining_fraction = 0.1;
+    double of_lines = 0;
+    for (const Map* map : at) {
+      error = std::max(error, map->error);
+      of_lines = std::max(of_lines, samples_iris ? 0 : remaining_fraction * map->line_error);
+    }
+    // Margin for rays between the tested rays; it grows with the error of the map.
+    constexpr double linear_margin = 1.25, quadratic_margin = 100, min_margin = 2e-4;
+    return 1 + (linear_margin + quadratic_margin * error) * error + of_lines + min_margin;
+  }
+
+  std::vector<Map> maps;
+
+ private:
+  std::span<const FilmPoint> points_;
+  std::span<const PupilPolygon> polygons_;
+  const StopOf& stop_of_;
+  std::size_t wavelength_;
+};
+
+/// The numbers of all wavelengths. Data: FilmPupilTable::Data.
+template <int terms, class Data>
+std::vector<double> stop_numbers(const Data& data, const iris_detail::IrisShape& shape, const StopOf& stop_of,
+                                 int threads) {
+  std::vector<FilmPoint> points;
+  for (std::size_t i = 0; i < data.nodes(); ++i) points.push_back(data.node_point(i));
+  std::vector<std::vector<PupilPolygon>> polygons(data.wavelengths);
+  std::vector<std::optional<StopOfWavelength<terms>>> stops(data.wavelengths);
+  parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
+      polygon.obscured_from.fill(0), polygon.obscured.fill(0);
+    }
+    stops[w].emplace(points, polygons[w], stop_of, w);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      auto& map = stops[w]->maps[i];
+      map.samples_iris = map.known && !data.obscured && whole_iris_within(map, polygons[w][i], shape, data.enclosing);
     }
   });
   if (data.enclosing) {
     for (std::size_t r = 0; r + 1 < data.compiled.count(); ++r) {
       const std::size_t w = data.compiled.position(r), next = data.compiled.position(r + 1);
-      for (std::size_t i = 0; i < maps[w].size(); ++i) {
-        if (!maps[w][i].known || !maps[next][i].known) continue;
-        const double change = change_of(maps[w][i], maps[next][i], polygons[w][i]);
-        maps[w][i].error += change, maps[next][i].error += change;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        auto &a = stops[w]->maps[i], &b = stops[next]->maps[i];
+        if (!a.known || !b.known) continue;
+        const double change = change_of(a, b, polygons[w][i]);
+        a.error += change, b.error += change;
       }
     }
   }
-  const std::size_t across = dimensions == 1 ? 1 : data.columns + 1;
+  const std::size_t across = data.dimensions == 1 ? 1 : data.columns + 1;
   std::vector<std::vector<double>> by_wavelength(data.wavelengths);
   parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+    const StopOfWavelength<terms>& stop = *stops[w];
+    // The scale of a node holds for all cells around it.
+    std::vector<double> scales(points.size(), 1);
+    std::vector<bool> of_iris(points.size(), false);
     for (std::size_t row = 0; row < data.rows; ++row) {
       for (std::size_t column = 0; column < data.columns; ++column) {
         const std::size_t first = row * across + column;
-        std::vector<std::size_t> nodes{first, first + 1};
-        if (dimensions == 2) nodes.insert(nodes.end(), {first + across, first + across + 1});
-        std::vector<const Map*> at;
-        std::vector<PupilPolygon> own;
-        FilmPoint middle;
-        for (const std::size_t node : nodes) {
-          at.push_back(&maps[w][node]), own.push_back(polygons[w][node]);
-          const FilmPoint film = data.node_point(node);
-          middle.x += film.x / static_cast<double>(nodes.size());
-          middle.y += film.y / static_cast<double>(nodes.size());
-        }
-        const bool samples_iris = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->samples_iris; });
-        double scale = 1;
-        if (!std::all_of(at.begin(), at.end(), [](const Map* map) { return map->known; })) {
-          scale = unlimited;
-        } else if (data.enclosing) {
-          PolygonWeights weights;
-          for (std::size_t k = 0; k < nodes.size(); ++k) {
-            weights.polygons[k] = k, weights.weights[k] = 1 / static_cast<double>(nodes.size());
-          }
-          double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
-          for (const Map* map : at) error = std::max(error, map->error);
-          // Fraction of the line error that remains after the second pass of clipping.
-          constexpr double remaining_fraction = 0.1;
-          double of_lines = 0;
-          for (const Map* map : at)
-            of_lines = std::max(of_lines, samples_iris ? 0 : remaining_fraction * map->line_error);
-          // Margin for rays between the tested rays; it grows with the error of the map.
-          constexpr double linear_margin = 1.25, quadratic_margin = 100, min_margin = 2e-4;
-          scale += (linear_margin + quadratic_margin * error) * error + of_lines + min_margin;
-        }
-        const std::vector<double> cell = cell_of<dimensions>(at, samples_iris, scale);
-        by_wavelength[w].insert(by_wavelength[w].end(), cell.begin(), cell.end());
+        std::vector<std::size_t> cell{first, first + 1};
+        if (data.dimensions == 2) cell.insert(cell.end(), {first + across, first + across + 1});
+        const auto all = [&](bool NodeMap<terms>::*member) {
+          return std::all_of(cell.begin(), cell.end(), [&](std::size_t i) { return stop.maps[i].*member; });
+        };
+        if (!all(&NodeMap<terms>::known)) continue;
+        of_iris[first] = all(&NodeMap<terms>::samples_iris);
+        if (!data.enclosing) continue;
+        const double scale = stop.scale(cell, of_iris[first]);
+        for (const std::size_t i : cell) scales[i] = std::max(scales[i], scale);
       }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto& map = stop.maps[i];
+      put_node(by_wavelength[w], map, of_iris[i], map.known ? scales[i] : unlimited);
     }
   });
   std::vector<double> result;
-  for (const auto& cells : by_wavelength) result.insert(result.end(), cells.begin(), cells.end());
+  for (const auto& numbers : by_wavelength) result.insert(result.end(), numbers.begin(), numbers.end());
   return result;
 }
 
@@ -326,12 +357,12 @@ StopOf traced_stop(const Lens& lens, const TwoPlanes& space) {
 FilmPupilTable FilmPupilTable::Data::with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of,
                                                int threads) const {
   using namespace pupil_table_detail;
-  StopCells found{iris_detail::IrisShape(iris), stop_of, {}, {}};
-  found.cells = dimensions == 1 ? stop_cells<1>(*this, found.shape, stop_of, threads)
-                                : stop_cells<2>(*this, found.shape, stop_of, threads);
-  found.cells_single.assign(found.cells.begin(), found.cells.end());
+  StopNodes found{iris_detail::IrisShape(iris), stop_of, {}, {}};
+  found.numbers = dimensions == 1 ? stop_numbers<15>(*this, found.shape, stop_of, threads)
+                                  : stop_numbers<20>(*this, found.shape, stop_of, threads);
+  found.numbers_single.assign(found.numbers.begin(), found.numbers.end());
   auto result = std::make_shared<Data>(*this);
-  result->stop = std::make_shared<const StopCells>(std::move(found));
+  result->stop = std::make_shared<const StopNodes>(std::move(found));
   return FilmPupilTable(std::move(result));
 }
 

@@ -9,7 +9,7 @@
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/lens/lens.hpp"
-#include "polygon_grid.hpp"
+#include "pupil_table/pupil_grid.hpp"
 #include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::pupil_table_detail {
@@ -23,19 +23,19 @@ using StopOf =
 StopOf traced_stop(const Lens& lens, const TwoPlanes& space);
 
 /// The stop behind the pupils of a grid: owns the numbers of GridStop.
-struct StopCells {
+struct StopNodes {
   iris_detail::IrisShape shape;
   StopOf stop_of;
-  std::vector<double> cells;  // StopLayout
-  std::vector<float> cells_single;
+  std::vector<double> numbers;  // [wavelength][node] StopLayout
+  std::vector<float> numbers_single;
 
   template <class R>
   GridStop<R> borrowed() const noexcept {
     GridStop<R> result;
     if constexpr (sizeof(R) == sizeof(float)) {
-      result.cells = cells_single.data();
+      result.nodes = numbers_single.data();
     } else {
-      result.cells = cells.data();
+      result.nodes = numbers.data();
     }
     result.iris = shape.sectors<R>();
     result.area = static_cast<R>(shape.area());
