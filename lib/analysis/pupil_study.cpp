@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t blocks = 64;  // of lines, per pupil
 
-/// Calls use(block, lines) for blocks of lines that are uniform over a pupil. Returns the area of the pupil.
+/// Calls use(block, lines, areas) for blocks of lines through a pupil, with the area that each line represents.
 template <class Use>
-double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
-                 const core_detail::Kronecker<2>& even, Use use) {
+void for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
+               const core_detail::Kronecker<2>& even, Use use) {
   const FilmPoint of = pupils.of.value_or(film);
   std::array<double, lines_per_point> film_x, film_y, u, v, areas;
   film_x.fill(of.x), film_y.fill(of.y);
@@ -29,9 +29,8 @@ double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t w
     pupils.map.sample(lines_per_point, film_x.data(), film_y.data(), u.data(), v.data(), {.all = wavelength}, u.data(),
                       v.data(), areas.data());
     for (std::size_t i = 0; i < lines_per_point; ++i) lines.put(i, u[i], v[i]);
-    use(b, lines);
+    use(b, lines, areas);
   }
-  return areas[0];
 }
 
 constexpr double total = blocks * lines_per_point;
@@ -69,17 +68,15 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
       Point& point = points[begin];
       PointRays rays;
       const auto even = uniform_points(samples_, point.index);
-      const double whole = for_lines(exact_, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
+      for_lines(exact_, point.film, wavelength, even, [&](std::size_t, const PointLines& lines, const auto& areas) {
         exact_.tracing(lines, wavelength, rays);
         point.passes.push_back(rays.passes);
         for (std::size_t i = 0; i < lines_per_point; ++i) {
           if (!rays.passes[i]) continue;
-          point.area += 1 / total;
-          point.irradiance += weight(lines, i) / total;
+          point.area += areas[i] / total;
+          point.irradiance += areas[i] * weight(lines, i) / total;
         }
       });
-      point.area *= whole;
-      point.irradiance *= whole;
     });
     const double brightest = std::ranges::max(points, {}, &Point::irradiance).irradiance;
     std::erase_if(points, [&](const Point& p) { return !(p.irradiance > darkest * brightest); });
@@ -89,23 +86,21 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
   const core_detail::Kronecker<2> even = uniform_points(samples_, point.index);
   PointRays exact, rays;
-  double exact_alone = 0, model_alone = 0, irradiance = 0;
-  const double exact_area =
-      for_lines(exact_, point.film, wavelength, even, [&](std::size_t b, const PointLines& lines) {
-        model.tracing(lines, wavelength, rays);
-        for (std::size_t i = 0; i < lines_per_point; ++i) exact_alone += point.passes[b][i] && !rays.passes[i];
-      });
-  const double model_area = for_lines(model, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
+  double alone = 0, irradiance = 0;  // alone: area of lines that only one of both lets pass
+  for_lines(exact_, point.film, wavelength, even, [&](std::size_t b, const PointLines& lines, const auto& areas) {
+    model.tracing(lines, wavelength, rays);
+    for (std::size_t i = 0; i < lines_per_point; ++i) alone += point.passes[b][i] && !rays.passes[i] ? areas[i] : 0;
+  });
+  for_lines(model, point.film, wavelength, even, [&](std::size_t, const PointLines& lines, const auto& areas) {
     exact_.tracing(lines, wavelength, exact);
     model.within(lines, wavelength, rays);
     for (std::size_t i = 0; i < lines_per_point; ++i) {
       if (!rays.passes[i]) continue;
-      model_alone += !exact.passes[i];
-      irradiance += weight(lines, i);
+      alone += exact.passes[i] ? 0 : areas[i];
+      irradiance += areas[i] * weight(lines, i);
     }
   });
-  return {model.point ? 1 : (exact_alone * exact_area + model_alone * model_area) / (total * point.area),
-          std::abs(irradiance * model_area / (total * point.irradiance) - 1)};
+  return {model.point ? 1 : alone / (total * point.area), std::abs(irradiance / (total * point.irradiance) - 1)};
 }
 
 PupilStudy::Measurement PupilStudy::measure(const ModelPupils& model) const {

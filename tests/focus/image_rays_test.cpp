@@ -69,8 +69,9 @@ TEST(ImageRays, SpotsEqualBoundaries) {
     const Lens lens = compile(prescription);
     const double f = std::abs(thick_lens(lens).rear_focal_length), film_z = lens.film_z() + 0.01 * f;
     for (const std::size_t rays : {256, 1024}) {
-      // The spot of the fisheye has a few distant rays: 0.0244 to 0.0251 mm with 256 rays, 0.0248 mm with 65536.
-      const double relative = rays == 256 ? 0.015 : 0.01;
+      // The spot of the fisheye has a few distant rays: 0.0244 to 0.0251 mm with 256 rays, 0.0245 mm with 1024, 0.0248
+      // mm with 65536.
+      const double relative = rays == 256 ? 0.015 : 0.012;
       const ImageRays bundles(lens, 0.4 * f, rays);
       for (const double field : {0.0, 0.5, 0.9}) {
         for (const double distance : {20 * f, 1e9}) {
