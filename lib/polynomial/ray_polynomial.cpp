@@ -74,7 +74,7 @@ WavelengthFits::WavelengthFits(const RayPolynomial::Domain& domain, std::span<co
   const auto [modes, weights] = find_modes(coefficients, tolerances);
   modes_ = modes.size();
   mode_weights_ = {wavelengths_, weights};
-  const auto round_to = [&]<class R>(In<R>& in) {
+  const auto round_to = [&, &modes = modes]<class R>(In<R>& in) {
     in.scales = scales_of<R>(domain);
     in.empty_domain = in.scales;
     in.empty_domain.per_film_radius = std::numeric_limits<R>::quiet_NaN();

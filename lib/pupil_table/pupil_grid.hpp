@@ -174,12 +174,12 @@ struct FilmQuadrant {
     const V x = kernel::absolute(film_x), y = kernel::absolute(film_y);
     const V end(R(1) + R(1e-6));  // the rounded edge still belongs to the film
     const V up = y * V(rows_per_mm);
-    const Mask<V> in_rows = (x * x + y * y <= V(reach * reach)) & (up <= end * V(static_cast<R>(rows))) & sound;
+    const Mask<V> in_rows = all_of(x * x + y * y <= V(reach * reach), up <= end * V(static_cast<R>(rows)), sound);
     const Step<V> row = step_of(select(in_rows, up, V(0)), rows);
     const auto half = pupil_table_detail::rows<2, V>(half_widths, row.cell);
     const V& s = row.rest;
     const V width = half[0] + s * (half[1] - half[0]);
-    const Mask<V> known = in_rows & (x <= end * width);
+    const Mask<V> known = all_of(in_rows, x <= end * width);
     const V across = x / positive_or_one(width) * V(static_cast<R>(columns));
     const Step<V> column = step_of(select(known, across, V(0)), columns);
     const V& t = column.rest;

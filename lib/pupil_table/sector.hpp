@@ -17,6 +17,7 @@ namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
 
+using kernel::all_of;
 using kernel::select;
 using std::sqrt;
 
@@ -83,7 +84,7 @@ struct Sector {
 
   /// True if the position lies between the lines from the middle through the corners.
   PETZVAL_INLINE auto faces(const Point<V>& q) const noexcept {
-    return (turn(a, q) >= V(0)) & (turn(q, b) >= V(0)) & (turn(a, b) > V(0));
+    return all_of(turn(a, q) >= V(0), turn(q, b) >= V(0), turn(a, b) > V(0));
   }
   /// Relative radius of a position that the sector faces.
   PETZVAL_INLINE V relative_radius(const Point<V>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
@@ -93,7 +94,7 @@ struct Sector {
     return select(both > V(0), V(before / positive_or_one(both)), V(0));
   }
   PETZVAL_INLINE auto obscures(const V& squared_radius) const noexcept {
-    return (squared_radius >= obscured_from) & (squared_radius < obscured_from + obscured);
+    return all_of(squared_radius >= obscured_from, squared_radius < obscured_from + obscured);
   }
 };
 
