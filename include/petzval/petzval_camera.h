@@ -374,7 +374,7 @@ PZ_FN PZ_BOOL pz_valid(PZ_T int floats) {
 
 /* ---- Polygons between nodes ---- */
 
-/* A cell of a grid of nodes and a place in it. Numbers of nodes are linear along each axis of the grid. */
+/* A cell of a grid of nodes, and a place in the cell. Numbers of nodes are linear along each axis of the grid. */
 PZ_STRUCT(pz_cell) {
   int list;       /* position in the head of the list of nodes; the size of a node follows */
   int node;       /* first node of the cell */
@@ -448,7 +448,7 @@ PZ_FN pz_sector pz_with_place(pz_sector s, float along) {
   s.edge = pz_xy(s.a.x + along * (s.b.x - s.a.x), s.a.y + along * (s.b.y - s.a.y));
   return s;
 }
-/* The sector of a sample: `turn` is the fraction of the sectors before it. */
+/* The sector of a sample: `turn` is the fraction of the sectors before the point. */
 PZ_FN pz_sector pz_sector_after(PZ_T pz_cell c, float turn) {
   int k = pz_below(64, 64.0f * turn);
   return pz_with_place(pz_sector_of(PZ_P c, k), 64.0f * turn - PZ_FLOAT(k));

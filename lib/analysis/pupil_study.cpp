@@ -86,7 +86,7 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
   const core_detail::Kronecker<2> even = uniform_points(samples_, point.index);
   PointRays exact, rays;
-  double alone = 0, irradiance = 0;  // alone: area of lines that only one of both lets pass
+  double alone = 0, irradiance = 0;  // alone: area of the lines that either only the lens or only the model passes
   for_lines(exact_, point.film, wavelength, even, [&](std::size_t b, const PointLines& lines, const auto& areas) {
     model.tracing(lines, wavelength, rays);
     for (std::size_t i = 0; i < lines_per_point; ++i) alone += point.passes[b][i] && !rays.passes[i] ? areas[i] : 0;

@@ -14,14 +14,6 @@ inline T square_root(const T& x) noexcept {
   return sqrt(x);
 }
 
-/// The sign of x, 1 or -1, without branches, which would be unpredictable; for a dual number, without derivatives.
-inline float sign_of(float x) noexcept { return __builtin_copysignf(1, x); }
-inline double sign_of(double x) noexcept { return __builtin_copysign(1, x); }
-template <class T>
-inline T sign_of(const T& x) noexcept {
-  return x < T(0) ? T(-1) : T(1);
-}
-
 /// x clamped to [0, 1]; 0 for NaN.
 template <class R>
 inline R clamped(R x) noexcept {

@@ -31,23 +31,13 @@ PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double 
   PupilPolygon about_middle = polygon;
   about_middle.middle = {0, polygon.middle.y + step};
   for (auto& corner : about_middle.corners) corner -= step * towards;
-  PupilRegion region{.directions = 2 * polygon_corners};
-  region.middle = about_middle.middle;
-  if (low < high) {
-    const double to_centre = from_middle - step, square_margin = radius * radius - to_centre * to_centre;
-    // Fraction of d at which a line outwards leaves the polygon or the disc: square t^2 - 2 t along - margin = 0.
-    const auto leaves = [&](const Vec2<double>& d) {
-      const double square = d.x * d.x + d.y * d.y, along = d.y * to_centre;
-      return std::min(reach(about_middle, d), (along + std::sqrt(along * along + square * square_margin)) / square);
-    };
-    region.half_axes = {leaves({1, 0}), (high - low) / 2};
-    for (std::size_t k = 0; k < region.directions; ++k) {
-      const double end = leaves(region.half_axes * region.unit(k));
-      const Vec2<double> rim = region.at(k, end);
-      region.spans.push_back({k, 0, end, {region.middle.x, region.middle.y}, {rim.x, rim.y}});
-    }
-  }
-  return polygon_of(region, PolygonFit::equal_area);
+  if (!(low < high)) return {.middle = about_middle.middle};
+  const double to_centre = from_middle - step, square_margin = radius * radius - to_centre * to_centre;
+  // Fraction of d at which a line outwards leaves the polygon or the disc: square t^2 - 2 t along - margin = 0.
+  return polygon_within(about_middle.middle, (high - low) / 2, [&](const Vec2<double>& d) {
+    const double square = d.x * d.x + d.y * d.y, along = d.y * to_centre;
+    return std::min(reach(about_middle, d), (along + std::sqrt(along * along + square * square_margin)) / square);
+  });
 }
 
 }  // namespace petzval::pupil_table_detail

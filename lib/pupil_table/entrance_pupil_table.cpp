@@ -105,7 +105,7 @@ struct EntrancePupilTable::Data {
   }
   void add(const PupilPolygon& p) {
     p.append_to(nodes);
-    obscured = obscured || std::any_of(p.obscured.begin(), p.obscured.end(), [](double width) { return width > 0; });
+    obscured = obscured || p.is_obscured();
   }
 
   template <int dimensions>

@@ -163,20 +163,26 @@ void evaluate_by_rule(const Grid& given, std::size_t count, const R* const (&lin
   });
 }
 
-/// Calls body(obscured, stopped) with compile-time constants.
-template <class Grid, class Body>
-void with_kind(const Grid& grid, const Body& body) noexcept {
-  const auto by_stop = [&](auto obscured) {
-    grid.stop.nodes ? body(obscured, std::true_type()) : body(obscured, std::false_type());
-  };
-  // Tables over a quadrant leave out no obscuration.
-  if constexpr (Grid::Chart::cell_nodes == 2) {
-    if (grid.obscured) {
-      by_stop(std::true_type());
-      return;
+/// Evaluates `polygon`, or `iris` for the rays whose cells sample the iris.
+/// @param polygon called with the kind of the grid, as in with_kind()
+template <std::size_t outputs, class Grid, class R, class Polygon, class Iris>
+void evaluate_kind(const Grid& grid, std::size_t count, const R* const (&lines)[4], const RayWavelengths& wavelengths,
+                   R* const (&to)[outputs], const Polygon& polygon, const Iris& iris) noexcept {
+  with_kind(grid, [&](auto obscured, auto stopped) {
+    const auto own = [&](const Grid& same, const auto& cell, const Line<Lanes<R>>& line) {
+      return polygon(same, cell, line, obscured, stopped);
+    };
+    if constexpr (stopped.value) {
+      evaluate_by_rule(grid, count, lines, wavelengths, to, own, iris);
+    } else {
+      evaluate(grid, count, lines, wavelengths, to, own);
     }
-  }
-  by_stop(std::false_type());
+  });
+}
+
+template <class V>
+PETZVAL_INLINE std::array<V, 3> numbers(const PupilPoint<V>& p) noexcept {
+  return {p.x, p.y, p.area};
 }
 
 template <class Grid, class R>
@@ -184,20 +190,14 @@ void sample(const Grid& grid, std::size_t count, const R* const (&lines)[4], con
             R* const (&to)[3]) noexcept {
   using V = Lanes<R>;
   using Cell = CellOf<typename Grid::Chart, V>;
-  const auto numbers = [](const PupilPoint<V>& p) { return std::array<V, 3>{p.x, p.y, p.area}; };
-  with_kind(grid, [&](auto obscured, auto stopped) {
-    const auto polygon = [&](const Grid& own, const Cell& cell, const Line<V>& line) {
-      return numbers(in_polygon<obscured.value, stopped.value, V>(own, cell, line.a, line.b));
-    };
-    if constexpr (stopped.value) {
-      const auto iris = [&](const Grid& own, const Cell& cell, const Line<V>& line) {
+  evaluate_kind(
+      grid, count, lines, wavelengths, to,
+      [](const Grid& own, const Cell& cell, const Line<V>& line, auto obscured, auto stopped) {
+        return numbers(in_polygon<obscured.value, stopped.value, V>(own, cell, line.a, line.b));
+      },
+      [](const Grid& own, const Cell& cell, const Line<V>& line) {
         return numbers(in_iris<V>(own, cell, line.a, line.b));
-      };
-      evaluate_by_rule(grid, count, lines, wavelengths, to, polygon, iris);
-    } else {
-      evaluate(grid, count, lines, wavelengths, to, polygon);
-    }
-  });
+      });
 }
 
 template <class Grid, class R>
@@ -205,19 +205,14 @@ void areas(const Grid& grid, std::size_t count, const R* const (&lines)[4], cons
            R* const (&to)[1]) noexcept {
   using V = Lanes<R>;
   using Cell = CellOf<typename Grid::Chart, V>;
-  with_kind(grid, [&](auto obscured, auto stopped) {
-    const auto polygon = [&](const Grid& own, const Cell& cell, const Line<V>& line) {
-      return std::array<V, 1>{locate<obscured.value, stopped.value, V>(own, cell, {line.a, line.b}).area};
-    };
-    if constexpr (stopped.value) {
-      const auto iris = [&](const Grid& own, const Cell& cell, const Line<V>& line) {
+  evaluate_kind(
+      grid, count, lines, wavelengths, to,
+      [](const Grid& own, const Cell& cell, const Line<V>& line, auto obscured, auto stopped) {
+        return std::array<V, 1>{locate<obscured.value, stopped.value, V>(own, cell, {line.a, line.b}).area};
+      },
+      [](const Grid& own, const Cell& cell, const Line<V>& line) {
         return std::array<V, 1>{area_in_iris<V>(own, cell, {line.a, line.b})};
-      };
-      evaluate_by_rule(grid, count, lines, wavelengths, to, polygon, iris);
-    } else {
-      evaluate(grid, count, lines, wavelengths, to, polygon);
-    }
-  });
+      });
 }
 
 template <class Grid, class R>
@@ -262,8 +257,7 @@ void sample_images(const IrisImageTable<R>& table, std::size_t count, const R* c
   using V = Lanes<R>;
   evaluate_images(table, count, lines, wavelengths, to,
                   [](const auto& own, const ImageSections<V>& image, const Line<V>& line) {
-                    const PupilPoint<V> p = in_image(own, image, line.film_x, line.film_y, line.a, line.b);
-                    return std::array<V, 3>{p.x, p.y, p.area};
+                    return numbers(in_image(own, image, line.film_x, line.film_y, line.a, line.b));
                   });
 }
 

@@ -172,28 +172,19 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
       low = std::max(low, disc.shift * height - disc.radius);
       high = std::min(high, disc.shift * height + disc.radius);
     }
-    PupilRegion overlap{.directions = region_directions};
-    if (low < high) {
-      overlap.middle = {0, (low + high) / 2};
-      // Fraction of (x, y) at which a line outwards from the middle leaves the first disc.
-      const auto leaves = [&](double x, double y) {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const PupilDisc& disc : discs) {
-          const double from_centre = overlap.middle[1] - disc.shift * height, square = x * x + y * y;
-          const double b = y * from_centre, c = disc.radius * disc.radius - from_centre * from_centre;
-          nearest = std::min(nearest, (std::sqrt(b * b + square * c) - b) / square);
-        }
-        return nearest;
-      };
-      overlap.half_axes = {leaves(1, 0), (high - low) / 2};
-      for (std::size_t k = 0; k < overlap.directions; ++k) {
-        const Vec2<double> p = overlap.unit(k);
-        const double radius = leaves(overlap.half_axes[0] * p.x, overlap.half_axes[1] * p.y);
-        const auto rim = overlap.at(k, radius);
-        overlap.spans.push_back({k, 0, radius, {overlap.middle[0], overlap.middle[1]}, {rim[0], rim[1]}});
+    PupilPolygon& overlap = polygons.emplace_back();
+    if (!(low < high)) continue;
+    const Vec2<double> middle{0, (low + high) / 2};
+    // Fraction of d at which a line outwards from the middle leaves the first disc.
+    overlap = polygon_within(middle, (high - low) / 2, [&](const Vec2<double>& d) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const PupilDisc& disc : discs) {
+        const double from_centre = middle.y - disc.shift * height, square = d.x * d.x + d.y * d.y;
+        const double b = d.y * from_centre, c = disc.radius * disc.radius - from_centre * from_centre;
+        nearest = std::min(nearest, (std::sqrt(b * b + square * c) - b) / square);
       }
-    }
-    polygons.push_back(polygon_of(overlap, PolygonFit::equal_area));
+      return nearest;
+    });
   }
   return polygons;
 }

@@ -2,8 +2,11 @@
 #include "film_pupil_data.hpp"
 
 namespace petzval {
+namespace {
 
 using namespace pupil_table_detail;
+
+}  // namespace
 
 void FilmPupilTable::Data::set(const FilmGrid& grid) {
   dimensions = 2;
@@ -18,9 +21,10 @@ void FilmPupilTable::Data::add(const std::vector<PupilPolygon>& polygons) {
   if (dimensions == 1) rows = polygons.size() - 1, height = reach;
   for (const PupilPolygon& p : polygons) {
     p.append_to(numbers);
-    obscured = obscured || std::any_of(p.obscured.begin(), p.obscured.end(), [](double width) { return width > 0; });
+    obscured = obscured || p.is_obscured();
   }
-  numbers_single.assign(numbers.begin(), numbers.end());
+  numbers_single.insert(numbers_single.end(), numbers.begin() + static_cast<std::ptrdiff_t>(numbers_single.size()),
+                        numbers.end());
 }
 
 FilmPoint FilmPupilTable::Data::node_point(std::size_t node) const noexcept {

@@ -31,16 +31,14 @@ struct PolygonAt {
   PolygonAt(const Grid& g, const FilmPoint& film, std::int32_t wavelength) noexcept
       : grid(g), cell(cell_at(g, film.x, film.y, wavelength)) {}
   Point<double> middle() const noexcept { return middle_of<double>(grid, cell); }
-  Point<double> corner(std::size_t k) const noexcept {
-    return corner_of<double>(grid, cell, static_cast<std::int32_t>(k));
-  }
-  Sector<double> sector(std::size_t k) const noexcept {
-    const auto i = static_cast<std::int32_t>(k);
-    return grid.obscured ? sector_of<true, double>(grid, cell, i) : sector_of<false, double>(grid, cell, i);
+  Point<double> corner(std::int32_t k) const noexcept { return corner_of<double>(grid, cell, k); }
+  Sector<double> sector(std::int32_t k) const noexcept {
+    return grid.obscured ? sector_of<true, double>(grid, cell, k) : sector_of<false, double>(grid, cell, k);
   }
   double area() const noexcept {
     double sum = 0;
-    for (std::size_t k = 0; cell.known && k < polygon_corners; ++k) sum += std::max(sector(k).area(), 0.0);
+    constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
+    for (std::int32_t k = 0; cell.known && k < corners; ++k) sum += std::max(sector(k).area(), 0.0);
     return sum;
   }
   bool samples_iris() const noexcept {
@@ -48,13 +46,6 @@ struct PolygonAt {
   }
   Point<double> to_grid(double x, double y) const noexcept {
     return Grid::Chart::to_grid(cell, Point<double>{x, y}) - middle();
-  }
-  /// Calls body(obscured, stopped) with compile-time constants.
-  template <class Body>
-  auto with_kind(const Body& body) const noexcept {
-    if (grid.obscured)
-      return grid.stop.nodes ? body(std::true_type(), std::true_type()) : body(std::true_type(), std::false_type());
-    return grid.stop.nodes ? body(std::false_type(), std::true_type()) : body(std::false_type(), std::false_type());
   }
 };
 
@@ -122,7 +113,7 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
     if (!polygon.cell.known || !std::isfinite(u + v)) return {};
     const auto [x, y, area] =
         polygon.samples_iris() ? in_iris<double>(grid, polygon.cell, u, v)
-                               : polygon.with_kind([&](auto obscured, auto stopped) {
+                               : with_kind(grid, [&](auto obscured, auto stopped) {
                                    return in_polygon<obscured.value, stopped.value, double>(grid, polygon.cell, u, v);
                                  });
     return {x, y, area};
@@ -183,7 +174,7 @@ double FilmPupilTable::sample_area(const FilmPoint& film, double x, double y, Wa
     const PolygonAt polygon(grid, film, data_->known(wavelength));
     if (!polygon.cell.known || !std::isfinite(x + y)) return 0.0;
     if (polygon.samples_iris()) return area_in_iris<double>(grid, polygon.cell, {x, y});
-    return polygon.with_kind([&](auto obscured, auto stopped) {
+    return with_kind(grid, [&](auto obscured, auto stopped) {
       return locate<obscured.value, stopped.value, double>(grid, polygon.cell, {x, y}).area;
     });
   });
@@ -271,10 +262,10 @@ Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y,
       const auto p = stop_point<double>(grid, cell, stop_at<double>(grid, cell), {x, y});
       return data_->stop->shape.position(p.x, p.y);
     }
-    return polygon.with_kind([&](auto obscured, auto stopped) -> Vec2<double> {
+    return with_kind(grid, [&](auto obscured, auto stopped) -> Vec2<double> {
       const auto at = locate<obscured.value, stopped.value, double>(grid, cell, {x, y});
       const Sector<double>& sector = at.line.sector;
-      if (!sector.faces(polygon.to_grid(x, y))) return {0, 2};
+      if (!at.faced) return {0, 2};
       const auto [first, last] = at.part;
       const double own = sector.fraction_within(at.squared_radius);
       const double v = !stopped.value ? own : last > first && own >= first ? (own - first) / (last - first) : 2;

@@ -113,7 +113,7 @@ PETZVAL_INLINE Mask<V> all_finite(const V& a, const V& b, const V& c, const V& d
 }  // namespace
 
 /// Film points of a lens of revolution: nodes are equally spaced in the distance from the axis. Polygons belong to film
-/// points on +y and rotate with the film point; cosine and sine are those of the angle from +y towards +x.
+/// points on +y and rotate with the film point; cosine and sine belong to the angle from +y towards +x.
 template <class R>
 struct FilmRadius {
   static constexpr int cell_nodes = 2, map_terms = 15;
@@ -282,19 +282,19 @@ PETZVAL_INLINE Sector<V> sector_of(const PupilGrid<Chart, R>& grid, const CellOf
 }
 
 /// The last sector whose first corner is before a position relative to the middle, by bisection.
-template <class V, class Chart, class R>
-PETZVAL_INLINE Index<V> sector_towards(const PupilGrid<Chart, R>& grid, const CellOf<Chart, V>& cell,
-                                       const Point<V>& q) noexcept {
+/// @param corner function; corner(k) is corner k
+template <class V, class Corner>
+PETZVAL_INLINE Index<V> sector_before(const Point<V>& q, const Corner& corner) noexcept {
   using Table = kernel::Table<V>;
-  const Point<V> first = corner_of(grid, cell, Index<V>{});
+  const Point<V> first = corner(Index<V>{});
   const Mask<V> second_half = turn(first, q) < V(0);
   V found(0);
   for (int step = static_cast<int>(polygon_corners) / 2; step > 0; step /= 2) {
     const V next = found + V(static_cast<float>(step));
-    const Point<V> corner = corner_of(grid, cell, Table::whole(next));
-    const Mask<V> corner_late = turn(first, corner) < V(0), behind = turn(corner, q) >= V(0);
-    const V in_late = select(corner_late, select(behind, next, found), next);
-    const V in_early = select(corner_late, found, select(behind, next, found));
+    const Point<V> at = corner(Table::whole(next));
+    const Mask<V> late = turn(first, at) < V(0), behind = turn(at, q) >= V(0);
+    const V in_late = select(late, select(behind, next, found), next);
+    const V in_early = select(late, found, select(behind, next, found));
     found = select(second_half, in_late, in_early);
   }
   return Table::whole(found);

@@ -3,6 +3,8 @@
 // several instruction sets, which the linker must not mix.
 #pragma once
 
+#include <type_traits>
+
 #include "pupil_table/pupil_grid.hpp"
 
 namespace petzval::pupil_table_detail {
@@ -174,11 +176,16 @@ struct PupilPoint {
   V x, y, area;
 };
 
-template <bool obscured, class V, class Chart, class R>
-PETZVAL_INLINE Outwards<V> outwards(const PupilGrid<Chart, R>& grid, const CellOf<Chart, V>& cell, const Index<V>& k,
-                                    const V& along) noexcept {
-  const Sector<V> sector = sector_of<obscured, V>(grid, cell, k);
-  return {k, sector, along, middle_of<V>(grid, cell), sector.at(V(1), along)};
+/// Calls body(obscured, stopped) with compile-time constants. Tables over a quadrant leave out no obscuration.
+template <class Grid, class Body>
+auto with_kind(const Grid& grid, const Body& body) noexcept {
+  const auto by_stop = [&](auto obscured) {
+    return grid.stop.nodes ? body(obscured, std::true_type()) : body(obscured, std::false_type());
+  };
+  if constexpr (Grid::Chart::cell_nodes == 2) {
+    if (grid.obscured) return by_stop(std::true_type());
+  }
+  return by_stop(std::false_type());
 }
 
 /// Samples the polygon, or its part inside the iris.
@@ -188,7 +195,8 @@ PETZVAL_INLINE PupilPoint<V> in_polygon(const PupilGrid<Chart, R>& grid, const C
   constexpr auto sectors = static_cast<std::int32_t>(polygon_corners);
   const V turns = V(static_cast<R>(sectors)) * clamped(Chart::fraction(cell, clamped(u)));
   const Step<V> at = step_of(turns, sectors);
-  const Outwards<V> line = outwards<obscured, V>(grid, cell, at.cell, at.rest);
+  const Sector<V> sector = sector_of<obscured, V>(grid, cell, at.cell);
+  const Outwards<V> line{at.cell, sector, at.rest, middle_of<V>(grid, cell), sector.at(V(1), at.rest)};
   V square = clamped(v), area = line.sector.sampled_area();
   if constexpr (stopped) {
     const Interval<V> part = clip<V>(grid, cell, line);
@@ -245,16 +253,17 @@ struct Located {
   V squared_radius;
   Interval<V> part;
   V area;
+  Mask<V> faced;  ///< true if a sector faces the position
 };
 template <bool obscured, bool stopped, class V, class Chart, class R>
 PETZVAL_INLINE Located<V> locate(const PupilGrid<Chart, R>& grid, const CellOf<Chart, V>& cell,
                                  const Point<V>& position) noexcept {
-  const Point<V> q = Chart::to_grid(cell, position) - middle_of<V>(grid, cell);
-  const Index<V> k = sector_towards<V>(grid, cell, q);
+  const Point<V> middle = middle_of<V>(grid, cell), q = Chart::to_grid(cell, position) - middle;
+  const Index<V> k = sector_before(q, [&](const Index<V>& i) { return corner_of<V>(grid, cell, i); });
   const Sector<V> sector = sector_of<obscured, V>(grid, cell, k);
-  const V radius = sector.relative_radius(q), squared = radius * radius;
-  Located<V> result{outwards<obscured, V>(grid, cell, k, sector.along_to(q)), squared, {V(0), V(1)}, V(0)};
-  Mask<V> inside = cell.known & sector.faces(q);
+  const V radius = sector.relative_radius(q), squared = radius * radius, along = sector.along_to(q);
+  Located<V> result{{k, sector, along, middle, sector.at(V(1), along)}, squared, {V(0), V(1)}, V(0), sector.faces(q)};
+  Mask<V> inside = cell.known & result.faced;
   V area = sector.sampled_area();
   if constexpr (stopped) {
     const Interval<V> part = clip<V>(grid, cell, result.line);

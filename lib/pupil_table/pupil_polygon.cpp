@@ -186,6 +186,10 @@ void PupilPolygon::append_to(std::vector<double>& nodes) const {
   for (std::size_t k = 0; k < polygon_corners; ++k) put(obscured_from[k], obscured[k]);
 }
 
+bool PupilPolygon::is_obscured() const noexcept {
+  return std::any_of(obscured.begin(), obscured.end(), [](double width) { return width > 0; });
+}
+
 double PupilPolygon::area() const noexcept { return PolygonSampler(*this).area(); }
 
 void PupilPolygon::widen(double by) noexcept {
@@ -371,7 +375,7 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     obscured[k] = {polygon.obscured_from[k], polygon.obscured_from[k] + polygon.obscured[k]};
   }
-  const bool ring = std::any_of(polygon.obscured.begin(), polygon.obscured.end(), [](double w) { return w > 0; });
+  const bool ring = polygon.is_obscured();
   std::size_t facing = 0;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     const Sector<double> edge = between.sector(k);

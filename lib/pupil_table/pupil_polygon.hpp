@@ -28,6 +28,8 @@ struct PupilPolygon {
 
   /// Area, mm^2.
   double area() const noexcept;
+  /// True if a sector is partly obscured.
+  bool is_obscured() const noexcept;
 
   /// Scales the corners outwards, and divides the outer radii of obscurations by the same factor.
   void widen(double by) noexcept;
@@ -65,6 +67,22 @@ enum class CornerSteps {
 
 /// The polygon of a region, with corners at equal steps of its area.
 PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps = CornerSteps::even);
+
+/// The polygon with the area of a region about a middle point that each line outwards leaves once.
+/// @param half_y half of the region's extent along y
+/// @param leaves function; leaves(d) is the fraction of d at which the line from the middle along d leaves the region
+template <class Leaves>
+PupilPolygon polygon_within(const Vec2<double>& middle, double half_y, const Leaves& leaves) {
+  PupilRegion region{.directions = 2 * polygon_corners};
+  region.middle = middle;
+  region.half_axes = {leaves(Vec2<double>{1, 0}), half_y};
+  for (std::size_t k = 0; k < region.directions; ++k) {
+    const double end = leaves(region.half_axes * region.unit(k));
+    const Vec2<double> rim = region.at(k, end);
+    region.spans.push_back({k, 0, end, {middle.x, middle.y}, {rim.x, rim.y}});
+  }
+  return polygon_of(region, PolygonFit::equal_area);
+}
 
 /// Some polygons of a table and their interpolation weights.
 struct PolygonWeights {

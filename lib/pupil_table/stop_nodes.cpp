@@ -224,7 +224,6 @@ void put_node(std::vector<double>& to, const NodeMap<terms>& map, bool samples_i
 }
 
 /// The stop at the nodes of one wavelength.
-/// @param cells the nodes of each cell
 template <int terms>
 class StopOfWavelength {
  public:
@@ -240,6 +239,7 @@ class StopOfWavelength {
   }
 
   /// Scale of the iris with which no ray of a cell is missed.
+  /// @param cell the nodes of the cell
   double scale(std::span<const std::size_t> cell, bool samples_iris) const {
     PolygonWeights weights;
     std::vector<const Map*> at;
@@ -306,7 +306,7 @@ std::vector<double> stop_numbers(const Data& data, const iris_detail::IrisShape&
   std::vector<std::vector<double>> by_wavelength(data.wavelengths);
   parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
     const StopOfWavelength<terms>& stop = *stops[w];
-    // The scale of a node holds for all cells around it.
+    // The scale of a node is the largest scale of the cells that share the node.
     std::vector<double> scales(points.size(), 1);
     std::vector<bool> of_iris(points.size(), false);
     for (std::size_t row = 0; row < data.rows; ++row) {

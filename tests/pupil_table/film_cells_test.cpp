@@ -142,7 +142,7 @@ TEST(FilmCells, ContinuousOverTheFilm) {
           const PupilSample now = at(-10 + 20.0 * i / steps);
           ASSERT_GT(now.area, 0);
           EXPECT_LT(std::hypot(now.x - before.x, now.y - before.y), 0.02) << u << ' ' << across << " step " << i;
-          // At the border of two sectors the area is that of either.
+          // At the border of two sectors, areas jump.
           if (u != 0 && u != 0.5) {
             EXPECT_LT(std::abs(now.area - before.area), 2e-3 * now.area);
           }
