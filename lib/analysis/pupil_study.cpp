@@ -86,21 +86,21 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
   const core_detail::Kronecker<2> even = uniform_points(samples_, point.index);
   PointRays exact, rays;
-  double alone = 0, irradiance = 0;  // alone: area of the lines that either only the lens or only the model passes
+  double differing = 0, irradiance = 0;  // differing: area of the lines that pass one of lens and model
   for_lines(exact_, point.film, wavelength, even, [&](std::size_t b, const PointLines& lines, const auto& areas) {
     model.tracing(lines, wavelength, rays);
-    for (std::size_t i = 0; i < lines_per_point; ++i) alone += point.passes[b][i] && !rays.passes[i] ? areas[i] : 0;
+    for (std::size_t i = 0; i < lines_per_point; ++i) differing += point.passes[b][i] && !rays.passes[i] ? areas[i] : 0;
   });
   for_lines(model, point.film, wavelength, even, [&](std::size_t, const PointLines& lines, const auto& areas) {
     exact_.tracing(lines, wavelength, exact);
     model.within(lines, wavelength, rays);
     for (std::size_t i = 0; i < lines_per_point; ++i) {
       if (!rays.passes[i]) continue;
-      alone += exact.passes[i] ? 0 : areas[i];
+      differing += exact.passes[i] ? 0 : areas[i];
       irradiance += areas[i] * weight(lines, i);
     }
   });
-  return {model.point ? 1 : alone / (total * point.area), std::abs(irradiance / (total * point.irradiance) - 1)};
+  return {model.point ? 1 : differing / (total * point.area), std::abs(irradiance / (total * point.irradiance) - 1)};
 }
 
 PupilStudy::Measurement PupilStudy::measure(const ModelPupils& model) const {
