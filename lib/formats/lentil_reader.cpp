@@ -5,7 +5,7 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "json_tree.hpp"
+#include "json_object.hpp"
 #include "petzval/core/error.hpp"
 #include "readers.hpp"
 #include "text_file.hpp"
@@ -144,10 +144,7 @@ void LentilReader::lens(const JsonObject& o) {
     in_.warn(0, "optical-elements-patent", "is left out, as optical-elements-adjusted is given");
   }
   for (std::size_t i = 0; i < elements->size(); ++i) {
-    const nlohmann::json& e = (*elements)[i];
-    const std::string path = o.path + '.' + key + '[' + std::to_string(i) + ']';
-    if (!e.is_object()) o.tree.refuse(path, shown(e), "an object");
-    element({e, path, in_, o.tree});
+    element(o.entry(std::string(key) + '[' + std::to_string(i) + ']', (*elements)[i]));
   }
   in_.lens.imported->title = title_of(o.json);
   if (const std::string patent = text_of(o.json, "patent-number"); !patent.empty()) in_.lens.source_design = patent;
@@ -180,9 +177,9 @@ Entry LentilReader::choose(const nlohmann::json& database) const {
 }
 
 void LentilReader::read(std::string_view text) {
-  const JsonTree tree(text, in_.where());
+  const io_detail::JsonTree tree(text, in_.where(), words_of_path);
   const nlohmann::json& document = tree.root();
-  if (!document.is_object()) tree.refuse("file", shown(document), "an object");
+  if (!document.is_object()) tree.refuse("", shown(document), "an object");
   if (document.contains("optical-elements-patent") || document.contains("optical-elements-adjusted")) {
     return lens({document, "file", in_, tree});
   }

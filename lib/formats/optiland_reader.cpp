@@ -10,7 +10,7 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "json_tree.hpp"
+#include "json_object.hpp"
 #include "petzval/core/error.hpp"
 #include "readers.hpp"
 #include "text_file.hpp"
@@ -25,10 +25,7 @@ const nlohmann::json& list(const JsonObject& object, const char* key) {
 }
 
 JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
-  const nlohmann::json& value = object.json.at(key).at(i);
-  std::string path = object.path + '.' + key + '[' + std::to_string(i) + ']';
-  if (!value.is_object()) object.tree.refuse(path, shown(value), "an object");
-  return {value, std::move(path), object.in, object.tree};
+  return object.entry(std::string(key) + '[' + std::to_string(i) + ']', object.json.at(key).at(i));
 }
 
 /// Measurements on refractiveindex.info that the table "misc" contains.
@@ -255,7 +252,7 @@ void OptilandReader::surfaces(const JsonObject& group) {
 }
 
 void OptilandReader::read(std::string_view text) {
-  const JsonTree tree(text, in_.where());
+  const io_detail::JsonTree tree(text, in_.where(), words_of_path);
   const JsonObject root{tree.root(), "file", in_, tree};
   if (root.find("name") && root.find("name")->is_string()) in_.lens.imported->title = root.text("name");
   if (root.find("aperture")) aperture(root.object("aperture"));

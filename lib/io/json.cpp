@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
@@ -19,6 +17,7 @@ namespace {
 
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // not every larger integer is a double
 constexpr const char* integer_rule = "an integer up to 2^53";
+constexpr std::size_t largest_text = std::size_t{16} << 20, deepest = 64, longest_list = 10'000;
 
 /// Shortens text for messages: strings of a document may be long.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
@@ -28,6 +27,7 @@ std::string shortened(std::string_view text, std::size_t longest = 60) {
 
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::string_view ends_of_words = " \t\r\n,:{}[]\"";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -39,81 +39,45 @@ bool is_not_finite(std::string_view word) {
   return lower == "infinity" || lower == "inf" || lower == "nan";
 }
 
-}  // namespace
+/// The text with bare words for non-finite numbers in quotes.
+std::string with_quoted_numbers(std::string_view text) {
+  std::string result;
+  result.reserve(text.size() + text.size() / 16);
+  for (std::size_t i = 0, end; i < text.size(); i = end) {
+    end = i + 1;
+    if (text[i] == '"') {
+      while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+      end = std::min(end + 1, text.size());
+    } else if (ends_of_words.find(text[i]) == std::string_view::npos) {
+      end = std::min(text.find_first_of(ends_of_words, i), text.size());
+    }
+    const std::string_view word = text.substr(i, end - i);
+    is_not_finite(word) ? result.append(1, '"').append(word).append(1, '"') : result.append(word);
+  }
+  return result;
+}
 
-/// Receives the events of nlohmann's parser.
-class JsonEvents {
+/// The tokens of a JSON text for which the parser has events (values, keys and brackets), in order. A class that calls
+/// `next` once per event knows the position of each event.
+class JsonTokens {
  public:
-  explicit JsonEvents(JsonReader& reader) : reader_(reader) {}
-
-  bool null() { return assign(nullptr); }
-  bool boolean(bool flag) { return assign(flag); }
-  bool number_integer(std::int64_t n) { return integer(n, n >= -largest_integer && n <= largest_integer); }
-  bool number_unsigned(std::uint64_t n) { return integer(n, n <= static_cast<std::uint64_t>(largest_integer)); }
-  bool number_float(double, const std::string& token);
-  bool string(std::string& text) { return assign(std::move(text)); }
-  bool binary(std::vector<std::uint8_t>&) { return false; }  // does not occur in JSON text
-  bool start_object(std::size_t) { return next(), reader_.open(false), true; }
-  bool start_array(std::size_t) { return next(), reader_.open(true), true; }
-  bool end_object() { return next(), reader_.close(), true; }
-  bool end_array() { return next(), reader_.close(), true; }
-  bool key(std::string& name) { return next(), reader_.key(name), true; }
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error);
+  explicit JsonTokens(std::string_view text) : text_(text) {
+    if (text_.starts_with(byte_order_mark)) from_ = to_ = byte_order_mark.size();
+  }
+  /// Moves to the next token; after the last token, to the end or to text that the parser refuses.
+  void next();
+  std::size_t byte() const noexcept { return from_; }  ///< offset of the token
+  std::string_view token() const noexcept { return text_.substr(from_, to_ - from_); }
+  std::string_view before() const noexcept { return before_; }  ///< previous token
+  char separator() const noexcept { return separator_; }        ///< ',' or ':' in front of the token, or 0
+  /// Line and column of a byte, both from 1: ":11:8". Columns count characters; lines end as in text_file.hpp.
+  std::string position(std::size_t byte) const;
 
  private:
-  void next() { reader_.tokens_.next(); }
-  bool assign(JsonValue value) { return next(), reader_.assign(std::move(value)), true; }
-  template <class Integer>
-  bool integer(Integer n, bool is_double) {
-    if (is_double) return assign(static_cast<double>(n));
-    next();
-    reader_.refuse(std::to_string(n), integer_rule);
-  }
-
-  JsonReader& reader_;
+  std::string_view text_, before_;
+  std::size_t from_ = 0, to_ = 0;
+  char separator_ = 0;
 };
-
-bool JsonEvents::number_float(double, const std::string& token) {
-  // Read the digits again: the number from the parser depends on the decimal point of the C locale and hides an
-  // underflow.
-  std::string digits = token;
-  for (char& c : digits) {
-    if (!is_digit(c) && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
-  }
-  double value = 0;
-  const auto status = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
-  if (digits.find_first_of(".eE") != std::string::npos && status == std::errc()) return assign(value);
-  next();
-  reader_.refuse(shortened(digits), status == std::errc() ? integer_rule : "a number within the range of double");
-}
-
-bool JsonEvents::parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
-  JsonTokens& tokens = reader_.tokens_;
-  const std::size_t last = tokens.byte();
-  tokens.next();
-  const std::string_view token = tokens.token();
-  const bool overflow = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;
-  // Common mistakes in lenses typed by hand; the message names the key and the rule for its value.
-  if (tokens.separator() == ':' && (overflow || is_not_finite(token))) {
-    reader_.assign(JsonWord{shortened(token)});
-  }
-  const std::string_view before = tokens.before();
-  const bool decimal_comma = tokens.separator() == ',' && !token.empty() && is_digit(token[0]) && !before.empty() &&
-                             is_digit(before.back()) && tokens.byte() == last + before.size() + 1;
-  if (decimal_comma) {
-    reader_.fail(last, shortened(std::string(before) + ',' + std::string(token)) +
-                           " has a decimal comma; must be a number with a decimal point");
-  }
-  std::string reason = error.what();
-  for (const std::string_view prefix : {"] ", ": syntax error "}) {
-    if (const auto at = reason.find(prefix); at != std::string::npos) reason.erase(0, at + prefix.size());
-  }
-  throw Error(reader_.where_ + ':' + tokens.line_and_column(tokens.byte()) + ": not JSON " + shortened(reason, 160));
-}
-
-JsonTokens::JsonTokens(std::string_view text) : text_(text) {
-  if (text_.starts_with(byte_order_mark)) from_ = to_ = byte_order_mark.size();
-}
 
 void JsonTokens::next() {
   before_ = token();
@@ -134,11 +98,11 @@ void JsonTokens::next() {
     while (to_ < text_.size() && text_[to_] != '"') to_ += text_[to_] == '\\' ? 2 : 1;
     to_ = std::min(to_ + 1, text_.size());
   } else if (std::string_view("{}[],:").find(first) == std::string_view::npos) {
-    to_ = std::min(text_.find_first_of(" \t\r\n,:{}[]\"", to_), text_.size());
+    to_ = std::min(text_.find_first_of(ends_of_words, to_), text_.size());
   }
 }
 
-std::string JsonTokens::line_and_column(std::size_t byte) const {
+std::string JsonTokens::position(std::size_t byte) const {
   std::size_t line = 1, column = 1;
   for (std::size_t i = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; i < byte; ++i) {
     const char c = text_[i];
@@ -148,13 +112,156 @@ std::string JsonTokens::line_and_column(std::size_t byte) const {
       ++column;
     }
   }
-  return std::to_string(line) + ':' + std::to_string(column);
+  return ':' + std::to_string(line) + ':' + std::to_string(column);
 }
 
-namespace {
+/// "value = x; must be rule", or "value is a list; ..." of lists and objects.
+std::string refusal(const std::string& words, const std::string& value, const std::string& rule) {
+  const bool sort = value == "a list" || value == "an object" || value == "missing";
+  return (words.empty() ? "document" : words) + (sort ? " is " : " = ") + value + "; must be " + rule;
+}
 
-/// Byte offset of the value at a path; nullopt if the text has no such value. The whole document has the path "".
-std::optional<std::size_t> find_in_json(std::string_view json, std::string_view path) {
+/// Receives the events of nlohmann's parser and builds a tree that its owner can empty.
+class Builder {
+ public:
+  /// @param text the text as in the file, for positions
+  Builder(nlohmann::json& root, std::string_view text, const std::string& where, JsonTree::Words words)
+      : next_(&root), tokens_(text), where_(where), words_(words) {}
+
+  bool null() { return add(nullptr); }
+  bool boolean(bool value) { return add(value); }
+  bool number_integer(std::int64_t value) { return integer(value, value >= -largest_integer); }
+  bool number_unsigned(std::uint64_t value) {
+    return integer(value, value <= static_cast<std::uint64_t>(largest_integer));
+  }
+  bool number_float(double, const std::string& token);
+  bool string(std::string& value) { return add(std::move(value)); }
+  bool binary(nlohmann::json::binary_t&) { return false; }  // does not occur in JSON text
+  bool start_object(std::size_t) { return open(nlohmann::json::value_t::object); }
+  bool start_array(std::size_t) { return open(nlohmann::json::value_t::array); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  bool key(std::string& name);
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error);
+
+ private:
+  struct Level {
+    nlohmann::json* json;  ///< stable: an entry moves only while its own entries are closed
+    std::size_t path_size;
+  };
+
+  [[noreturn]] void fail(std::size_t byte, const std::string& message) const {
+    throw Error(where_ + tokens_.position(byte) + ": " + message);
+  }
+  [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
+    fail(tokens_.byte(), refusal(words_(path_), value, rule));
+  }
+  std::string located(const std::string& message) const {
+    const std::string words = words_(path_);
+    return words.empty() ? message : words + ": " + message;
+  }
+  /// The place of the next value.
+  nlohmann::json& slot() {
+    tokens_.next();
+    if (levels_.empty() || levels_.back().json->is_object()) return *next_;
+    auto& [list, path_size] = levels_.back();
+    path_.resize(path_size);
+    path_ += '[' + std::to_string(list->size()) + ']';
+    return list->emplace_back();
+  }
+  template <class Value>
+  bool add(Value&& value) {
+    slot() = std::forward<Value>(value);
+    return true;
+  }
+  template <class Integer>
+  bool integer(Integer value, bool is_double) {
+    nlohmann::json& place = slot();
+    if (!is_double) refuse(std::to_string(value), integer_rule);
+    place = value;
+    return true;
+  }
+  bool open(nlohmann::json::value_t type) {
+    nlohmann::json& here = slot();
+    if (levels_.size() >= deepest) {
+      fail(tokens_.byte(), "more than " + std::to_string(deepest) + " levels of brackets; must be fewer");
+    }
+    here = type;
+    levels_.push_back({&here, path_.size()});
+    return true;
+  }
+  bool close() {
+    tokens_.next();
+    path_.resize(levels_.back().path_size);
+    levels_.pop_back();
+    return true;
+  }
+
+  nlohmann::json* next_;  ///< the root, then the member whose key was read last
+  std::vector<Level> levels_;
+  std::string path_;
+  JsonTokens tokens_;
+  const std::string& where_;
+  JsonTree::Words words_;
+};
+
+bool Builder::key(std::string& name) {
+  tokens_.next();
+  auto& [object, path_size] = levels_.back();
+  path_.resize(path_size);
+  const auto [member, is_new] = object->emplace(name, nullptr);
+  if (!is_new) fail(tokens_.byte(), located("key " + in_quotes(name) + " is given twice; must be given once"));
+  path_ += (path_.empty() ? "" : ".") + name;
+  next_ = &*member;
+  return true;
+}
+
+bool Builder::number_float(double, const std::string& token) {
+  // Read the digits again: the number from the parser depends on the decimal point of the C locale and hides an
+  // underflow.
+  std::string digits = token;
+  for (char& c : digits) {
+    if (!is_digit(c) && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
+  }
+  double value = 0;
+  const auto status = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
+  const bool is_integer = digits.find_first_of(".eE") == std::string::npos;
+  if (!is_integer && status == std::errc()) return add(value);
+  slot();
+  refuse(shortened(digits), status == std::errc() ? integer_rule : "a number within the range of double");
+}
+
+bool Builder::parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
+  const std::size_t last = tokens_.byte();
+  tokens_.next();
+  const std::string_view token = tokens_.token();
+  if (dynamic_cast<const nlohmann::json::out_of_range*>(&error)) refuse(shortened(token), "a finite number");
+  // A common mistake in lenses typed by hand.
+  const std::string_view before = tokens_.before();
+  const bool decimal_comma = tokens_.separator() == ',' && !token.empty() && is_digit(token[0]) && !before.empty() &&
+                             is_digit(before.back()) && tokens_.byte() == last + before.size() + 1;
+  if (decimal_comma) {
+    fail(last, located(shortened(std::string(before) + ',' + std::string(token)) +
+                       " has a decimal comma; must be a number with a decimal point"));
+  }
+  std::string reason = error.what();
+  for (const std::string_view prefix : {"] ", ": syntax error "}) {
+    if (const auto at = reason.find(prefix); at != std::string::npos) reason.erase(0, at + prefix.size());
+  }
+  fail(tokens_.byte(), "not JSON " + shortened(reason, 160));
+}
+
+/// Empties a value from the leaves up: the destructor of a list or object that is not empty allocates memory, and
+/// terminates the program if memory runs out.
+void empty(nlohmann::json& value) noexcept {
+  if (!value.is_structured()) return;
+  for (nlohmann::json& entry : value) empty(entry);
+  value.clear();
+}
+
+/// Byte offset of the value at a path, or of its key; nullopt if the text has no such value. The whole document has the
+/// path "".
+std::optional<std::size_t> find_in_json(std::string_view json, std::string_view path, bool key) {
   struct Level {
     bool list;
     std::size_t path_size, entries = 0;
@@ -176,6 +283,7 @@ std::optional<std::size_t> find_in_json(std::string_view json, std::string_view 
       if (level.list) here += '[' + std::to_string(level.entries++) + ']';
       if (is_key) {
         here += (here.empty() ? "" : ".") + std::string(token.substr(1, std::max<std::size_t>(token.size(), 2) - 2));
+        if (key && here == path) return tokens.byte();
         continue;
       }
     }
@@ -187,9 +295,106 @@ std::optional<std::size_t> find_in_json(std::string_view json, std::string_view 
 
 }  // namespace
 
-std::string json_position(std::string_view json, std::string path) {
+// Delegates to a constructor that completes before the text is read, so that the destructor runs if reading throws.
+JsonTree::JsonTree(std::string_view text, std::string where, Words words) : JsonTree() {
+  text_ = text, where_ = std::move(where), words_ = words;
+  if (text.size() > largest_text) {
+    throw Error(where_ + ": " + std::to_string(text.size()) + " bytes; must be at most " +
+                std::to_string(largest_text));
+  }
+  // nlohmann's parser treats a zero byte as the end of the text and ignores the rest of the text.
+  if (const auto zero = text.find('\0'); zero != std::string_view::npos) {
+    throw Error(where_ + JsonTokens(text).position(zero) + ": not JSON: a byte is 0; must be UTF-8");
+  }
+  Builder builder(root_, text, where_, words);
+  nlohmann::json::sax_parse(with_quoted_numbers(text), &builder);
+}
+
+JsonTree::~JsonTree() { empty(root_); }
+
+void JsonTree::fail(const std::string& path, const std::string& message, const std::string& key) const {
+  const std::string location = words_(path);
+  const bool at_key = !key.empty();
+  throw Error(where_ + json_position(text_, at_key ? key : path, at_key) + ": " + location +
+              (location.empty() ? "" : ": ") + message);
+}
+
+void JsonTree::refuse(const std::string& path, const std::string& value, const std::string& rule) const {
+  throw Error(where_ + json_position(text_, path) + ": " + refusal(words_(path), value, rule));
+}
+
+JsonPart::JsonPart(const JsonPart& list, std::size_t index)
+    : tree_(list.tree_), json_(list.json_[index]), path_(list.path_ + '[' + std::to_string(index) + ']') {}
+
+JsonPart::JsonPart(const JsonPart& object, const std::string& key, const nlohmann::json& json)
+    : tree_(object.tree_), json_(json), path_(object.path_ + (object.path_.empty() ? "" : ".") + key) {}
+
+void JsonPart::refuse(const std::string& rule) const {
+  const auto* word = json_.get_ptr<const std::string*>();
+  tree_.refuse(path_,
+               word                ? in_quotes(*word)
+               : json_.is_array()  ? "a list"
+               : json_.is_object() ? "an object"
+               : json_.is_number() ? to_text(json_.get<double>())
+                                   : json_.dump(),
+               rule);
+}
+
+double JsonPart::number(const char* rule) const {
+  if (!json_.is_number()) refuse(rule);
+  return json_.get<double>();
+}
+
+int JsonPart::whole_number(int least, int most) const {
+  const double value = number();
+  if (value >= least && value <= most && value == std::floor(value)) return static_cast<int>(value);
+  refuse("a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+std::string JsonPart::text() const {
+  if (!json_.is_string()) refuse("a string");
+  return json_.get<std::string>();
+}
+
+void JsonPart::get(bool& to) const {
+  if (!json_.is_boolean()) refuse("true or false");
+  to = json_.get<bool>();
+}
+
+void JsonPart::each(const std::function<void(const JsonPart&)>& read) const {
+  if (!json_.is_array()) refuse("a list");
+  if (json_.size() > longest_list) {
+    fail("more than " + std::to_string(longest_list) + " entries; must be fewer");
+  }
+  for (std::size_t i = 0; i < json_.size(); ++i) read(JsonPart(*this, i));
+}
+
+void JsonPart::each_member(const std::function<void(const std::string&, const JsonPart&)>& read) const {
+  if (!json_.is_object()) refuse("an object");
+  for (const auto& [key, value] : json_.items()) read(key, JsonPart(*this, key, value));
+}
+
+void JsonPart::read(std::initializer_list<JsonField> fields) const {
+  each_member([&](const std::string& key, const JsonPart& part) {
+    if (std::ranges::find(fields, std::string_view(key), &JsonField::name) != fields.end()) return;
+    std::string known;
+    for (const JsonField& field : fields) known += (known.empty() ? "" : ", ") + std::string(field.name);
+    tree_.fail(path_, "key " + in_quotes(key) + " is unknown; must be one of " + known, part.path_);
+  });
+  for (const JsonField& field : fields) {
+    if (const auto member = json_.find(field.name); member != json_.end()) {
+      field.set(JsonPart(*this, std::string(field.name), *member));
+    }
+  }
+  for (const JsonField& field : fields) {
+    if (!field.required || json_.contains(field.name)) continue;
+    fail("key " + in_quotes(field.name) + " is missing");
+  }
+}
+
+std::string json_position(std::string_view json, std::string path, bool key) {
   while (true) {
-    if (const auto byte = find_in_json(json, path)) return ':' + JsonTokens(json).line_and_column(*byte);
+    if (const auto byte = find_in_json(json, path, key)) return JsonTokens(json).position(*byte);
     if (path.empty()) return {};
     const std::size_t last = path.find_last_of(".[");
     path.resize(last == std::string::npos ? 0 : last);
@@ -197,67 +402,6 @@ std::string json_position(std::string_view json, std::string path) {
 }
 
 std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"'; }
-
-std::string describe(const JsonValue& value) {
-  if (std::holds_alternative<std::nullptr_t>(value)) return "null";
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const double* n = std::get_if<double>(&value)) return to_text(*n);
-  if (const JsonWord* word = std::get_if<JsonWord>(&value)) return word->text;
-  return in_quotes(std::get<std::string>(value));
-}
-
-void JsonReader::parse(std::string_view json) {
-  tokens_ = JsonTokens(json);
-  // nlohmann's parser treats a zero byte as the end of the text and ignores the rest of the text.
-  if (const auto zero = json.find('\0'); zero != std::string_view::npos) {
-    throw Error(where_ + ':' + tokens_.line_and_column(zero) + ": not JSON: a byte is 0; must be UTF-8");
-  }
-  JsonEvents events(*this);
-  nlohmann::json::sax_parse(json, &events);
-}
-
-void JsonReader::fail(std::size_t byte, const std::string& message) const {
-  const std::string location = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte) + ": " + location + (location.empty() ? "" : ": ") +
-              message);
-}
-
-void JsonReader::refuse(const std::string& value, const std::string& rule) const {
-  const std::string location = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (location.empty() ? "document" : location) +
-              " = " + value + "; must be " + rule);
-}
-
-void JsonReader::refuse_kind(const std::string& kind, const std::string& rule) const {
-  const std::string location = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (location.empty() ? "document" : location) +
-              " is " + kind + "; must be " + rule);
-}
-
-double JsonReader::number_of(const JsonValue& value) const {
-  if (const double* n = std::get_if<double>(&value)) return *n;
-  refuse(describe(value), "a number");
-}
-
-std::optional<double> JsonReader::maybe_number(const JsonValue& value) const {
-  if (std::holds_alternative<std::nullptr_t>(value)) return {};
-  return number_of(value);
-}
-
-std::string JsonReader::text_of(const JsonValue& value) const {
-  if (const std::string* text = std::get_if<std::string>(&value)) return *text;
-  refuse(describe(value), "a string");
-}
-
-std::optional<std::string> JsonReader::maybe_text(const JsonValue& value) const {
-  if (std::holds_alternative<std::nullptr_t>(value)) return {};
-  return text_of(value);
-}
-
-bool JsonReader::flag_of(const JsonValue& value) const {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag;
-  refuse(describe(value), "true or false");
-}
 
 std::string json_number(double value) {
   std::array<char, 64> buffer;

@@ -1,100 +1,117 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
+#include <vector>
 
 #include "petzval/core/config.hpp"
 
 namespace petzval::io_detail {
 
-/// A word that stands for a value but is not JSON ("Infinity"), or a number outside the range of double.
-struct JsonWord {
-  std::string text;
-};
-
-/// A value other than a list or an object.
-using JsonValue = std::variant<std::nullptr_t, bool, double, std::string, JsonWord>;
-
-/// The tokens of a JSON text for which the parser has events (values, keys and brackets), in order. A class that calls
-/// `next` once per event knows the position of each event.
-class PETZVAL_API JsonTokens {
+/// A JSON document as a tree that knows the position of each value. A value has a path ("surfaces[1].radius").
+///
+/// Bare Infinity, inf and NaN, with or without a sign, are read as strings.
+class PETZVAL_API JsonTree {
  public:
-  explicit JsonTokens(std::string_view text);
-  /// Moves to the next token; after the last token, to the end or to text that the parser refuses.
-  void next();
-  std::size_t byte() const noexcept { return from_; }  ///< offset of the token
-  std::string_view token() const noexcept { return text_.substr(from_, to_ - from_); }
-  std::string_view before() const noexcept { return before_; }  ///< previous token
-  char separator() const noexcept { return separator_; }        ///< ',' or ':' in front of the token, or 0
-  /// Line and column of a byte, both from 1: "11:8". Columns count characters; lines end as in text_file.hpp.
-  std::string line_and_column(std::size_t byte) const;
+  /// The name of a value in messages, from its path.
+  using Words = std::string (*)(std::string_view path);
+
+  /// Parses a text, which must outlive the tree. Numbers are read from their digits, independent of the locale.
+  /// @param where  file name, for messages
+  /// @throws Error, with line and column, if the text is not JSON, has a key twice in one object, a number out of range
+  ///         (integers: 2^53), brackets deeper than 64 levels or more than 16 MiB (a tree takes many times the memory
+  ///         of its text)
+  JsonTree(std::string_view text, std::string where, Words words);
+  ~JsonTree();
+  JsonTree(const JsonTree&) = delete;
+  JsonTree& operator=(const JsonTree&) = delete;
+
+  const nlohmann::json& root() const noexcept { return root_; }
+  /// Throws Error: "lens.json:11:8: surface 1: message".
+  /// @param key  path of a member whose key has the position; empty: the position of the value
+  [[noreturn]] void fail(const std::string& path, const std::string& message, const std::string& key = {}) const;
+  /// Throws Error: "lens.json:11:8: surface 1: radius = value; must be rule".
+  [[noreturn]] void refuse(const std::string& path, const std::string& value, const std::string& rule) const;
 
  private:
-  std::string_view text_, before_;
-  std::size_t from_ = 0, to_ = 0;
-  char separator_ = 0;
+  JsonTree() = default;
+
+  std::string_view text_;
+  std::string where_;
+  Words words_ = nullptr;
+  nlohmann::json root_;
 };
+
+struct JsonField;
+
+/// A value of a tree. Functions throw Error, with the position, if the value is of another kind.
+class PETZVAL_API JsonPart {
+ public:
+  explicit JsonPart(const JsonTree& tree) : tree_(tree), json_(tree.root()) {}
+
+  double number(const char* rule = "a number") const;
+  int whole_number(int least, int most) const;
+  std::string text() const;
+  const nlohmann::json& json() const noexcept { return json_; }
+
+  // Stores the value. Numbers and strings that may be absent may be null.
+  void get(double& to) const { to = number(); }
+  void get(std::string& to) const { to = text(); }
+  void get(bool& to) const;
+  template <class T>
+  void get(std::optional<T>& to) const {
+    to.reset();
+    if (!json_.is_null()) get(to.emplace());
+  }
+  /// Calls `read` for each entry of a list of at most 10,000 entries.
+  void each(const std::function<void(const JsonPart&)>& read) const;
+  /// Calls `read` for each member of an object, with its key.
+  void each_member(const std::function<void(const std::string&, const JsonPart&)>& read) const;
+  /// Reads the members of an object. Refuses unknown keys before it reads and missing keys afterwards.
+  void read(std::initializer_list<JsonField> fields) const;
+
+  /// Throws Error: "lens.json:11:8: message", with the words of the path in front of the message.
+  [[noreturn]] void fail(const std::string& message) const { tree_.fail(path_, message); }
+  [[noreturn]] void refuse(const std::string& rule) const;
+
+ private:
+  JsonPart(const JsonPart& list, std::size_t index);
+  JsonPart(const JsonPart& object, const std::string& key, const nlohmann::json& json);
+
+  const JsonTree& tree_;
+  const nlohmann::json& json_;
+  std::string path_;
+};
+
+/// A key of an object, and where its value goes.
+struct JsonField {
+  template <class T>
+    requires(!std::invocable<const T&, const JsonPart&>)
+  JsonField(std::string_view key, T& to, bool needed = false)
+      : name(key), set([&to](const JsonPart& part) { part.get(to); }), required(needed) {}
+  template <std::invocable<const JsonPart&> Read>
+  JsonField(std::string_view key, const Read& read, bool needed = false) : name(key), set(read), required(needed) {}
+
+  std::string_view name;
+  std::function<void(const JsonPart&)> set;
+  bool required;
+};
+inline constexpr bool required = true;
 
 /// Text in quotes for a message, shortened if it is long.
 PETZVAL_API std::string in_quotes(std::string_view text);
-/// Text of a value for a message.
-std::string describe(const JsonValue& value);
 
-/// Builds a result while nlohmann's parser walks the text. Only the result is stored. Content that does not belong to
-/// the format is refused with its line and column: `lens.json:11:8: surface 1: radius = "abc"; must be a number`.
-class JsonReader {
- public:
-  /// @param where file name, for messages
-  explicit JsonReader(std::string where) : where_(std::move(where)) {}
-  JsonReader(const JsonReader&) = delete;
-  JsonReader& operator=(const JsonReader&) = delete;
-  virtual ~JsonReader() = default;
-
-  /// Parses a text. Numbers are read from their digits, independent of the locale.
-  /// @throws Error if the text is not JSON, a number is out of range (integers: 2^53), or a call below throws
-  void parse(std::string_view json);
-
-  // The events, in the order of the text.
-  virtual void key(const std::string& name) = 0;
-  virtual void assign(JsonValue value) = 0;
-  virtual void open(bool list) = 0;  ///< a list or an object
-  virtual void close() = 0;
-  /// The position as text, from brackets and keys ("surface 1: radius"); empty for the document itself.
-  virtual std::string here() const = 0;
-  /// Throws Error: "file:11:8: surface 1: radius = value; must be rule".
-  [[noreturn]] void refuse(const std::string& value, const std::string& rule) const;
-
- protected:
-  /// Throws Error because a list or an object stands in the position of another kind of value, or vice versa.
-  [[noreturn]] void refuse_kind(const std::string& kind, const std::string& rule) const;
-  /// Throws Error: "file:11:8: surface 1: message", at the last token or at a byte.
-  [[noreturn]] void fail(const std::string& message) const { fail(byte(), message); }
-  [[noreturn]] void fail(std::size_t byte, const std::string& message) const;
-  std::size_t byte() const noexcept { return tokens_.byte(); }
-
-  double number_of(const JsonValue& value) const;
-  std::optional<double> maybe_number(const JsonValue& value) const;
-  std::string text_of(const JsonValue& value) const;
-  std::optional<std::string> maybe_text(const JsonValue& value) const;
-  bool flag_of(const JsonValue& value) const;
-
-  std::string where_;
-
- private:
-  friend class JsonEvents;
-
-  JsonTokens tokens_{{}};
-};
-
-/// Line and column (":11:8") of the value at a path ("surfaces[1].radius") in a JSON text, for messages. If the text
-/// has no such value, the result is the position of the nearest list or object on the path. The text may contain
-/// Infinity and NaN.
-PETZVAL_API std::string json_position(std::string_view json, std::string path);
+/// Line and column (":11:8") of the value at a path in a JSON text, or of its key, for messages. If the text has no
+/// such value, the result is the position of the nearest list or object on the path.
+PETZVAL_API std::string json_position(std::string_view json, std::string path, bool key = false);
 
 /// The shortest decimal number that is read back as the same double. It always has a decimal point, and no exponent
 /// from 1e-4 to 1e16.
