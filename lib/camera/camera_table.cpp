@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
+#include "core/chebyshev.hpp"
 #include "lens/lens_view.hpp"
 #include "make_model.hpp"
 #include "petzval/camera/camera.hpp"
@@ -44,26 +44,6 @@ class Numbers {
   }
 };
 
-/// Powers of the coordinate t for a function of t in [-1, 1]: interpolation at the Chebyshev nodes.
-template <class Function>
-std::array<double, 8> powers_of(const Function& function) {
-  constexpr std::size_t n = 8;
-  std::array<double, n> node, divided;
-  for (std::size_t i = 0; i < n; ++i) {
-    node[i] = std::cos(std::numbers::pi * (2 * static_cast<double>(i) + 1) / (2 * n));
-    divided[i] = function(node[i]);
-  }
-  for (std::size_t k = 1; k < n; ++k) {
-    for (std::size_t i = n - 1; i >= k; --i) divided[i] = (divided[i] - divided[i - 1]) / (node[i] - node[i - k]);
-  }
-  std::array<double, n> powers{};
-  for (std::size_t k = n; k-- > 0;) {  // p = p (t - node) + divided
-    for (std::size_t i = n - 1; i > 0; --i) powers[i] = powers[i - 1] - node[k] * powers[i];
-    powers[0] = divided[k] - node[k] * powers[0];
-  }
-  return powers;
-}
-
 /// Numbers by wavelength (pz_number()): for compiled wavelengths, and as polynomials for the others.
 void put_wavelengths(Numbers& to, const CameraAccess::Data& data) {
   const Lens& lens = data.lens;
@@ -93,10 +73,10 @@ void put_wavelengths(Numbers& to, const CameraAccess::Data& data) {
   if (!(coordinate.shortest <= coordinate.longest) || wavelengths == 1) return;
   to.set(PZ_T_SCALE, coordinate.scale), to.set(PZ_T_OFFSET, coordinate.offset);
   for (std::size_t k = 0; k < 4; ++k) {
-    to.add_all(powers_of([&](double t) {
+    to.add_all(core_detail::by_powers(core_detail::chebyshev_series<8>([&](double t) {
       const double nm = coordinate.scale / (t + coordinate.offset);
       return facts_at(Wavelength::nm(std::clamp(nm, coordinate.shortest, coordinate.longest)))[k];
-    }));
+    })));
   }
   for (std::size_t space = 0; space <= count; ++space) to.add_all(sequence.media[space].by_power);
   for (std::size_t i = 0; i < count; ++i) {

@@ -7,33 +7,13 @@
 #include <numbers>
 #include <vector>
 
+#include "core/chebyshev.hpp"
 #include "iris/iris_edges.hpp"
 
 namespace petzval::iris_detail {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// Coefficients, by power of t in [-1, 1], of the polynomial that equals value(t) at the Chebyshev nodes.
-template <std::size_t n, class Value>
-std::array<double, n> interpolate(const Value& value) {
-  std::array<double, n> sums{};
-  for (std::size_t j = 0; j < n; ++j) {
-    const double angle = pi * (static_cast<double>(j) + 0.5) / n, f = value(std::cos(angle));
-    for (std::size_t k = 0; k < n; ++k) {
-      sums[k] += (k == 0 ? 1.0 : 2.0) / n * f * std::cos(static_cast<double>(k) * angle);
-    }
-  }
-  // Chebyshev polynomials by powers: T(k + 1) = 2 t T(k) - T(k - 1).
-  std::array<double, n> powers{}, before{}, own{1};
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = 0; i <= k; ++i) powers[i] += sums[k] * own[i];
-    std::array<double, n> next{};
-    for (std::size_t i = 0; i < n; ++i) next[i] = (i > 0 ? (k == 0 ? 1 : 2) * own[i - 1] : 0) - before[i];
-    before = own, own = next;
-  }
-  return powers;
-}
 
 /// The fractional part in [0, 1), also of negative numbers.
 double fraction(double x) noexcept { return x - std::floor(x); }
@@ -44,10 +24,11 @@ template <class R>
 void IrisShape::fill(Columns<R>& columns) const {
   const Blade blade(iris_);
   const auto edge_fraction = [](double t) { return std::sqrt((1 + t) / 2); };
-  const auto across =
-      interpolate<edge_terms<R>>([&](double t) { return blade.across_at(edge_fraction(t)) / edge_fraction(t); });
-  const auto along =
-      interpolate<edge_terms<R>>([&](double t) { return blade.along_at(blade.across_at(edge_fraction(t))); });
+  const auto interpolate = [](const auto& value) {
+    return core_detail::by_powers(core_detail::chebyshev_series<edge_terms<R>>(value));
+  };
+  const auto across = interpolate([&](double t) { return blade.across_at(edge_fraction(t)) / edge_fraction(t); });
+  const auto along = interpolate([&](double t) { return blade.along_at(blade.across_at(edge_fraction(t))); });
   columns.across.assign(across.begin(), across.end());
   columns.along.assign(along.begin(), along.end());
   for (int k = 0; k < iris_.blades; ++k) {

@@ -2,11 +2,11 @@
 #include "spectrum.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core/chebyshev.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::lens_detail {
@@ -15,27 +15,6 @@ namespace {
 using kernel::SquaredIndex;
 
 constexpr std::size_t terms = SquaredIndex<double>::terms;
-
-/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: a sum of T_0 to T_7, in powers.
-SquaredIndex<double> through(const std::array<double, terms>& values) {
-  SquaredIndex<double> result{.by_power = {0}, .constant = false};
-  std::array<double, terms> before{}, own{1};  // T_{k-1}, T_k
-  for (std::size_t k = 0; k < terms; ++k) {
-    double term = 0;
-    for (std::size_t j = 0; j < terms; ++j) {
-      const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
-      term += values[j] * std::cos(static_cast<double>(k) * angle) * (k == 0 ? 1.0 : 2.0) / terms;
-    }
-    for (std::size_t i = 0; i < terms; ++i) result.by_power[i] += term * own[i];
-    std::array<double, terms> next{};
-    for (std::size_t i = 0; i < terms; ++i) {
-      next[i] = (i > 0 ? own[i - 1] * (k == 0 ? 1 : 2) : 0) - (k == 0 ? 0 : before[i]);
-    }
-    before = own;
-    own = next;
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -59,29 +38,29 @@ Spectrum::Spectrum(std::span<const double> wavelengths_nm)
 void Spectrum::add(const std::function<double(double)>& index_at, std::span<const double> kinks) {
   media_.emplace_back();
   SquaredIndex<double>& medium = media_.back();
-  // `term` is in units of pi / terms: the zeros of T_8 are at odd halves, its extrema at integers.
-  const auto nm_at = [&](double term) {
-    const double t = std::cos(std::numbers::pi * term / terms);
+  const auto nm_of = [&](double t) {
     const double nm = coordinate_.scale / (t + coordinate_.offset);
     return std::clamp(nm, *std::min_element(compiled_nm_.begin(), compiled_nm_.end()),
                       *std::max_element(compiled_nm_.begin(), compiled_nm_.end()));
   };
+  // `term` is in units of pi / terms: the extrema of T_8 are at integers.
+  const auto nm_at = [&](double term) { return nm_of(std::cos(std::numbers::pi * term / terms)); };
   try {
     if (coordinate_.scale == 0) {
       const double n = index_at(compiled_nm_.front());
       medium.by_power[0] = n * n;
       return;
     }
-    std::array<double, terms> values;
-    for (std::size_t j = 0; j < terms; ++j) {
-      const double n = index_at(nm_at(static_cast<double>(j) + 0.5));
-      values[j] = n * n;
-    }
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    medium.by_power[0] = values[0];
-    medium.constant = *least == *most;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    const auto series = core_detail::chebyshev_series<terms>([&](double t) {
+      const double n = index_at(nm_of(t));
+      least = std::min(least, n * n), most = std::max(most, n * n);
+      return n * n;
+    });
+    medium.by_power[0] = most;
+    medium.constant = least == most;
     if (medium.constant) return;
-    medium = through(values);
+    medium.by_power = core_detail::by_powers(series);
     constexpr double error_margin = 1.1;  // margin for errors between the checked wavelengths
     const auto check = [&](double nm) {
       error_ = std::max(error_, error_margin * std::abs(index(media_.size() - 1, nm) - index_at(nm)));

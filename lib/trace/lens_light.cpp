@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/chebyshev.hpp"
 #include "lens/lens_view.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/prescription/coating.hpp"
@@ -75,47 +75,14 @@ struct Argument {
 
 /// Chebyshev coefficients of the transmittance over the range of an argument.
 Series chebyshev(const SurfaceAt& at, const Argument& argument) {
-  const auto [from, to] = argument.range(at);
-  Series values, result{};
-  for (std::size_t j = 0; j < samples; ++j) {
-    const double x = std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / samples);
-    values[j] = argument.light(at, std::lerp(from, to, (x + 1) / 2));
-  }
-  for (std::size_t k = 0; k < samples; ++k) {
-    for (std::size_t j = 0; j < samples; ++j) {
-      const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / samples;
-      result[k] += values[j] * std::cos(static_cast<double>(k) * angle) * (k == 0 ? 1.0 : 2.0) / samples;
-    }
-  }
-  return result;
+  const auto range = argument.range(at);
+  return core_detail::chebyshev_series<samples>(
+      [&](double x) { return argument.light(at, std::lerp(range[0], range[1], (x + 1) / 2)); });
 }
 
 double tail(const Series& series, std::size_t terms) noexcept {
   double sum = 0;
   for (std::size_t k = terms; k < samples; ++k) sum += std::abs(series[k]);
-  return sum;
-}
-
-/// The first terms of a series in x = factor z + shift, in powers of z; from the highest power on.
-std::vector<double> powers(const Series& series, std::size_t terms, double factor, double shift) {
-  std::vector<double> sum(terms), before(terms), own(terms);
-  own[0] = 1;
-  const auto times_x = [&](const std::vector<double>& of) {
-    std::vector<double> product(terms);
-    for (std::size_t i = 0; i < terms; ++i) {
-      product[i] += shift * of[i];
-      if (i + 1 < terms) product[i + 1] += factor * of[i];
-    }
-    return product;
-  };
-  for (std::size_t k = 0; k < terms; ++k) {
-    for (std::size_t i = 0; i < terms; ++i) sum[i] += series[k] * own[i];
-    std::vector<double> next = times_x(own);
-    for (std::size_t i = 0; k > 0 && i < terms; ++i) next[i] = 2 * next[i] - before[i];
-    before = own;
-    own = std::move(next);
-  }
-  std::ranges::reverse(sum);
   return sum;
 }
 
@@ -129,7 +96,7 @@ struct Polynomial {
   Argument argument{LightVariable::ratio};
   LowerIndex lower = LowerIndex::varies;
   double from = 0, to = 1, error = 0;             ///< range of the argument over all nodes
-  std::vector<std::vector<double>> coefficients;  ///< [node][term]; empty: all light passes
+  std::vector<std::vector<double>> coefficients;  ///< [node][term], from the highest power on; empty: all light passes
 };
 
 /// True if a surface passes all light: a mirror of unknown coating, or an uncoated surface without refraction.
@@ -189,7 +156,9 @@ Polynomial fit(const std::vector<SurfaceAt>& at) {
     // The ranges of single nodes are mapped to -1 to 1 as well.
     const auto [from, to] = result.argument.range(at[n]);
     const double factor = (result.to - result.from) / (to - from);
-    own = powers(best[n], own.size(), factor, factor + (2 * result.from - from - to) / (to - from));
+    const double shift = factor + (2 * result.from - from - to) / (to - from);
+    const Series powers = core_detail::by_powers(best[n], own.size(), factor, shift);
+    std::ranges::reverse_copy(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(own.size()), own.begin());
   }
   return result;
 }
