@@ -120,8 +120,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const RayModel& model, int thre
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }
   return EntrancePupilTable(lens, leaving_rays_of(lens, model, threads),
-                            model.kind().is_polynomial() ? traced_passing(lens) : passing(model),
-                            model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples, threads);
+                            model.kind().is_polynomial() ? traced_passing(lens) : passing(model), threads);
 }
 
 /// Distance from which the pupil equals the pupil at infinity up to rounding, mm.

@@ -461,7 +461,7 @@ EntrancePupilTable LocalFocus::entrances(const Lens& lens, const RayModel& model
           passes[i] = from.dz[i] > 0 && std::hypot(line.x, line.y) <= radii[wavelength] * widest * (1 + rounding);
         }
       },
-      ClippedBy::samples, threads);
+      threads);
 }
 
 double LocalFocus::middle(std::size_t wavelength) const noexcept { return data_->compiled[wavelength].middle; }

@@ -38,18 +38,15 @@ double cone(double radius, double distance) noexcept {
 template <int dimensions>
 void expand_to_neighbours(std::vector<SceneNodes<dimensions>>& tables,
                           const lens_detail::CompiledWavelengths& compiled) {
-  using L = SceneLayout<dimensions>;
   const std::vector<SceneNodes<dimensions>> own = tables;
   const auto expand = [&](SceneNodes<dimensions>& table, const SceneNodes<dimensions>& other) {
     if (table.polygons.empty() || other.polygons.empty()) return;
-    for (std::int32_t node = 0; node < L::nodes; ++node) {
-      const double distance = static_cast<double>(node / L::layer) / L::distances;
-      const double down = static_cast<double>(node % L::layer / L::row), across = node % L::row;
+    constexpr auto& lattice = SceneNodes<dimensions>::lattice;
+    for (std::size_t node = 0; node < lattice.size(); ++node) {
+      const ChartPoint own_point = lattice.point(node);
       // The same field, limited to the last field of the other wavelength.
-      const Vec2<double> fraction{across / L::fields, dimensions == 2 ? across / L::fields : down / L::fields};
-      const Vec2<double> field = glm::min(table.last(distance) * fraction, other.last(distance));
-      const auto at = other.weights(field, distance);
-      if (at) expand_towards(table.polygons[static_cast<std::size_t>(node)], interpolated(other.polygons, *at));
+      const ChartPoint at = other.point(own_point[0], table.angles(own_point));
+      expand_towards(table.polygons[node], interpolated(other.polygons, lattice.weights(at)));
     }
   };
   for (std::size_t r = 0; r + 1 < compiled.count(); ++r) {
@@ -195,7 +192,7 @@ EntranceSample EntrancePupilTable::Data::in_cone(const Vec3<double>& point, std:
 }
 
 EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays,
-                                       const ScenePassing& passing, ClippedBy clipped_by, int threads) {
+                                       const ScenePassing& passing, int threads) {
   auto data = std::make_shared<Data>(lens);
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
@@ -225,15 +222,12 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
     while (widest_field(data->centre, own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
   }
   data->cylinders = !lens.rotationally_symmetric();
-  if (data->cylinders) {
-    data->fill<3>(rays.size(), threads, [&](std::size_t w) {
-      return nodes_with_cylinders(data->centre, data->steepest, rays[w], w, passing);
+  data->with_grid([&](const auto& grid) {
+    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
+    data->fill<dimensions>(rays.size(), threads, [&](std::size_t w) {
+      return scene_nodes<dimensions>(data->centre, data->steepest, rays[w], w, passing);
     });
-  } else {
-    data->fill<2>(rays.size(), threads, [&](std::size_t w) {
-      return nodes_of_revolution(data->centre, data->steepest, rays[w], w, passing, clipped_by);
-    });
-  }
+  });
   data_ = std::move(data);
 }
 

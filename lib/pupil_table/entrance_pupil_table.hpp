@@ -41,12 +41,6 @@ using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlane
 PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool equal_azimuths,
                                                                const TwoPlaneRaysToScene& to_scene, int threads = 1);
 
-/// The part of a lens that clips a pupil.
-enum class ClippedBy : std::uint8_t {
-  apertures,  ///< Apertures clip the pupil; sampled rays only bound the pupil from inside.
-  samples     ///< The sampled rays bound the pupil: for models without apertures.
-};
-
 /// Tests N rays from the scene at a wavelength; passes[i] is 1 if ray i passes the lens. Called from several threads.
 using ScenePassing = std::function<void(std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                         std::uint8_t* passes)>;
@@ -73,7 +67,7 @@ class PETZVAL_API EntrancePupilTable {
  public:
   /// @param rays leaving_rays(); they determine the largest fields and the positions of pupils
   EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays, const ScenePassing& passing,
-                     ClippedBy clipped_by = ClippedBy::apertures, int threads = 1);
+                     int threads = 1);
 
   /// True if a point is finite and not behind the first surface of the lens.
   bool in_front(const Vec3<double>& point) const noexcept;

@@ -1,42 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
-#include "petzval/lens/lens.hpp"
-#include "pupil_table/film_pupil_table.hpp"
-#include "pupil_table/pupil_polygon.hpp"
-#include "pupil_table/two_plane_rays.hpp"
+#include "petzval/core/film.hpp"
+#include "pupil_chart.hpp"
 
 namespace petzval::pupil_table_detail {
 
-/// A grid over the quadrant x, y >= 0 of a film, for lenses that are symmetric about x = 0 and y = 0. Rows are equally
-/// spaced in y, and the nodes of a row in x, so that interpolation is exact for a pupil that moves in proportion to the
-/// film point.
+/// A grid of film points. For a lens of revolution, points on +y. For a lens that is symmetric about x = 0 and y = 0,
+/// points of the quadrant x, y >= 0: rows are equally spaced in y, and the nodes of a row in x, so that interpolation
+/// is exact for a pupil that moves in proportion to the film point.
 struct FilmGrid {
-  std::size_t columns = 0;          ///< steps between the nodes of a row
+  std::size_t columns = 0;          ///< steps between the nodes of a row; 0 for a lens of revolution
   double height = 0;                ///< y of the last row, mm
   std::vector<double> half_widths;  ///< x of the last node of each row, mm; at least two rows
 
   std::size_t rows() const noexcept { return half_widths.size() - 1; }  ///< steps between rows of nodes
-  std::size_t nodes() const noexcept { return half_widths.size() * (columns + 1); }
+  Lattice nodes() const noexcept { return {{0, rows(), columns}}; }
+  FilmPoint point(const ChartPoint& at) const noexcept;
 };
 
-/// Grid over a disc about the axis.
-FilmGrid disc_grid(double film_radius);
-/// Grid over the part of a film that rays reach at any wavelength.
-FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius);
+/// Tests which film points rays reach at any wavelength.
+using LitPoints = std::function<std::vector<bool>(const std::vector<FilmPoint>& points)>;
 
-/// Pupils at the nodes of a grid, row by row, without obscurations. With PolygonFit::enclosing the interpolated pupils
-/// contain the pupils of the points between nodes.
-std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
-                                        std::size_t wavelength);
-
-/// Pupils of a tilted film, for each virtual film point. A pupil contains the pupils of all possible positions of the
-/// film point and of its mirror images.
-/// @param upright the table of a lens with two mirror symmetries
-std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
-                                               const FilmGrid& grid, std::size_t wavelength);
+/// Grid from the axis to the last lit point.
+/// @param strips number of steps between rows
+FilmGrid radial_grid(const LitPoints& lit, double film_radius, std::size_t strips);
+/// Grid over the lit part of a quadrant.
+FilmGrid quadrant_grid(const LitPoints& lit, double film_radius);
 
 }  // namespace petzval::pupil_table_detail

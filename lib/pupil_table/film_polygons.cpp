@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -28,137 +29,93 @@ std::optional<Vec2<double>> chief_position(const Lens& lens, const TwoPlanes& sp
   return Vec2<double>{position.x, position.y};
 }
 
-}  // namespace
-
-FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
-  const auto surfaces = lens.surfaces();
-  const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
-  const bool obscured = std::any_of(surfaces.begin(), surfaces.end(), obscures);
-  const Lens open = obscured ? without_obscurations(lens) : lens;
-  // Calls find(guesses, clearances, points) for the points at some heights.
-  const auto search = [open, space, wavelength](std::span<const double> heights, const auto& find) {
-    std::vector<FilmPoint> points;
-    for (const double height : heights) points.push_back({0, height});
-    std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(open, space, points, wavelength);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      // Aberrations move the image of a tiny stop by more than the size of the image.
-      constexpr double tiny_stop_ratio = 1e-3;
-      pupil_detail::PupilGuess& guess = guesses[i];
-      if (guess.radius > tiny_stop_ratio * (guess.high - guess.low)) continue;
-      if (const auto chief = chief_position(open, space, points[i], wavelength)) guess.y = chief->y;
-    }
-    return find(guesses, traced_lines(open, space, points, wavelength), points);
-  };
-  const auto regions = [&lens, open, obscured, space, wavelength](const auto& guesses, const auto& clearances,
-                                                                  const std::vector<FilmPoint>& points) {
-    const pupil_detail::ConnectedPupils connected{
-        [&](std::uint32_t i) { return chief_position(open, space, points[i], wavelength); },
-        obscured ? traced_lines(lens, space, points, wavelength) : pupil_detail::PositionClearances{}};
-    const auto order = pupil_detail::SearchOrder::rows(guesses.size(), guesses.size());
-    return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, &connected);
-  };
-  return {[=](std::span<const double> heights) { return search(heights, regions); },
-          [=](std::span<const double> heights) {
-            return search(heights, [](const auto& guesses, const auto& clearances, const auto&) {
-              return pupil_detail::lit_points(guesses, clearances);
-            });
-          }};
+std::vector<pupil_detail::PupilGuess> traced_guesses(const Lens& lens, const TwoPlanes& space,
+                                                     std::span<const FilmPoint> points, std::size_t wavelength) {
+  std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    // Aberrations move the image of a tiny stop by more than the size of the image, and first order does not describe
+    // cylinders.
+    constexpr double tiny_stop_ratio = 1e-3;
+    pupil_detail::PupilGuess& guess = guesses[i];
+    if (lens.rotationally_symmetric() && guess.radius > tiny_stop_ratio * (guess.high - guess.low)) continue;
+    if (const auto chief = chief_position(lens, space, points[i], wavelength)) guess.x = chief->x, guess.y = chief->y;
+  }
+  return guesses;
 }
 
-namespace {
-
-/// Height up to which rays reach the film at a wavelength, at most film_radius; 0 if no rays reach the film.
-double lit_radius(double film_radius, const FilmPupils& pupils) {
-  const auto lit_at = [&](double height) { return bool{pupils.lit(std::array{height})[0]}; };
-  if (lit_at(film_radius)) return film_radius;
-  // Search from the edge inwards: for a lit ring, the outer edge counts.
-  constexpr int intervals = 16;
-  for (int i = intervals; --i >= 0;) {
-    double low = film_radius * i / intervals, high = film_radius * (i + 1) / intervals;
-    if (!lit_at(low)) continue;
-    for (constexpr double relative_tolerance = 1e-4; high - low > relative_tolerance * high;) {
-      const double middle = (low + high) / 2;
-      (lit_at(middle) ? low : high) = middle;
-    }
-    return high;
-  }
-  return 0;
-}
-
-/// The polygons of one wavelength.
-std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const FilmPupils& film) {
-  // Heights at the nodes and, if interpolated polygons must enclose pupils, halfway between.
-  const std::size_t strips = film_strips(fit), steps_per_strip = fit == PolygonFit::enclosing ? 2 : 1;
-  std::vector<double> heights;
-  for (std::size_t i = 0; i <= steps_per_strip * strips; ++i) {
-    heights.push_back(lit_radius * static_cast<double>(i) / static_cast<double>(steps_per_strip * strips));
-  }
-  const std::vector<PupilRegion> pupils = film.at(heights);
-  const auto first_lit = [&](std::size_t height) -> const PupilRegion* {
-    for (std::size_t i = height; i < pupils.size(); i += heights.size()) {
-      if (!pupils[i].empty()) return &pupils[i];
-    }
-    return nullptr;
+PupilChart film_chart(const FilmPupils& pupils, const FilmGrid& grid, PolygonFit fit, std::size_t wavelength) {
+  // Polygons of equal area are interpolated between nodes without a check.
+  const std::size_t half_steps = fit == PolygonFit::enclosing ? 2 : 1;
+  PupilChart chart{.nodes = {{0, grid.rows(), grid.columns}},
+                   .points = {{pupils.layers - 1, half_steps * grid.rows(), half_steps * grid.columns}},
+                   .quadrant = !pupils.of_revolution,
+                   .directions = pupils.of_revolution ? 128u : 64u,
+                   .probed = !pupils.of_revolution};
+  const auto with_film = [&grid, wavelength](const auto& f) {
+    return [&grid, &f, wavelength](PupilChart::Points points) {
+      std::vector<FilmPupils::Point> film;
+      for (const ChartPoint& point : points) film.push_back({grid.point(point), point[0]});
+      return f(film, wavelength);
+    };
   };
-  std::vector<PupilPolygon> polygons(strips + 1);
-  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils from which the polygons were made
-  for (std::size_t i = 0; i <= strips; ++i) {
-    const std::size_t at = steps_per_strip * i;
-    shown[i] = first_lit(at);
-    if (shown[i]) {
-      polygons[i] = polygon_of(*shown[i], fit);
-      continue;
-    }
-    // The pupil becomes empty between this node and a neighbour: an enclosing polygon continues to this node, a polygon
-    // of equal area shrinks to a point.
-    for (const std::size_t neighbour : {at - 1, at + 1, at - 2, at + 2}) {
-      const PupilRegion* lit = neighbour < heights.size() ? first_lit(neighbour) : nullptr;
-      if (!lit) continue;
-      polygons[i] = polygon_of(*lit, fit);
-      if (fit == PolygonFit::equal_area) polygons[i].corners = {};
-      break;
-    }
-  }
-  if (fit == PolygonFit::equal_area) return polygons;
-  std::vector<InterpolationCheck> checks;
-  const auto check = [&](const PupilRegion& pupil, double strip) {
-    const auto i = static_cast<std::size_t>(strip);
-    const double t = strip - static_cast<double>(i);
-    checks.push_back({&pupil, {{i, std::min(i + 1, strips), 0, 0}, {1 - t, t, 0, 0}}});
-  };
-  for (std::size_t j = 0; j < pupils.size(); ++j) {
-    const std::size_t at = j % heights.size();
-    if (at % 2 == 1 || &pupils[j] != shown[at / 2]) check(pupils[j], static_cast<double>(at) / 2);
-  }
-  // Pupils shrink fast near the last height with light: check more heights.
-  std::vector<PupilRegion> shrinking;
-  if (pupils.back().empty()) {
-    constexpr std::size_t steps = 16;
-    std::vector<double> last;
-    for (std::size_t i = 1; i < steps; ++i) {
-      last.push_back(lit_radius * (1 - static_cast<double>(i) / (steps * strips)));
-    }
-    shrinking = film.at(last);
-    for (std::size_t i = 0; i < shrinking.size(); ++i) {
-      check(shrinking[i], static_cast<double>(strips) - static_cast<double>(i % last.size() + 1) / steps);
-    }
-  }
-  expand_to_cover(polygons, checks);
-  return polygons;
+  chart.guesses = with_film(pupils.guesses);
+  chart.clearances = with_film(pupils.clearances);
+  if (pupils.connected) chart.connected = with_film(pupils.connected);
+  return chart;
 }
 
 }  // namespace
 
-FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils, int threads) {
-  double lit = 0;
-  for (std::size_t w = 0; w < pupils.size() && lit < film_radius; ++w) {
-    lit = std::max(lit, lit_radius(film_radius, pupils[w]));
-  }
-  FilmPolygons result{lit > 0 ? lit : film_radius, std::vector<std::vector<PupilPolygon>>(pupils.size())};
-  parallel_for(pupils.size(), 1, threads, [&](std::size_t w, std::size_t) {
-    result.by_wavelength[w] = polygons_of(result.lit_radius, fit, pupils[w]);
+FilmPolygons film_polygons(const FilmPupils& pupils, double film_radius, PolygonFit fit, int threads) {
+  const LitPoints lit = [&](const std::vector<FilmPoint>& points) {
+    std::vector<bool> result(points.size(), false);
+    for (std::size_t i = 0; i < pupils.wavelengths * pupils.layers; ++i) {
+      const std::size_t w = i / pupils.layers, last = pupils.layers - 1;
+      std::vector<FilmPupils::Point> film;
+      for (const FilmPoint& point : points) {
+        film.push_back({point, last > 0 ? static_cast<double>(i % pupils.layers) / static_cast<double>(last) : 0.5});
+      }
+      const auto own = pupil_detail::lit_points(pupils.guesses(film, w), pupils.clearances(film, w));
+      std::transform(own.begin(), own.end(), result.begin(), result.begin(), std::logical_or<>());
+    }
+    return result;
+  };
+  FilmPolygons result{
+      pupils.of_revolution ? radial_grid(lit, film_radius, film_strips(fit)) : quadrant_grid(lit, film_radius), {}};
+  result.by_wavelength.resize(pupils.wavelengths);
+  parallel_for(pupils.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+    result.by_wavelength[w] = node_polygons(film_chart(pupils, result.grid, fit, w), fit);
   });
   return result;
+}
+
+FilmPolygons traced_polygons(const Lens& lens, const TwoPlanes& space, double film_radius, PolygonFit fit,
+                             int threads) {
+  const auto surfaces = lens.surfaces();
+  const bool of_revolution = lens.rotationally_symmetric();
+  const bool obscured = of_revolution && std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) {
+                          return s.obscuration_semi_diameter > 0;
+                        });
+  const Lens open = obscured ? without_obscurations(lens) : lens;
+  const auto film_points = [](FilmPupils::Points points) {
+    std::vector<FilmPoint> film;
+    for (const auto& point : points) film.push_back(point.film);
+    return film;
+  };
+  FilmPupils pupils{.of_revolution = of_revolution, .wavelengths = lens.wavelengths_nm().size()};
+  pupils.guesses = [&](FilmPupils::Points points, std::size_t w) {
+    return traced_guesses(open, space, film_points(points), w);
+  };
+  pupils.clearances = [&](FilmPupils::Points points, std::size_t w) {
+    return traced_lines(open, space, film_points(points), w);
+  };
+  const auto connected = [&](FilmPupils::Points points, std::size_t w) {
+    return pupil_detail::ConnectedPupils{
+        [&, w, film = film_points(points)](std::uint32_t i) { return chief_position(open, space, film[i], w); },
+        obscured ? traced_lines(lens, space, film_points(points), w) : pupil_detail::PositionClearances{}};
+  };
+  if (of_revolution) pupils.connected = connected;
+  return film_polygons(pupils, film_radius, fit, threads);
 }
 
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius) {

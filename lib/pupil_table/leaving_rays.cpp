@@ -17,7 +17,7 @@ struct FilmSamples {
 };
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool equal_azimuths, std::size_t wavelength) {
-  constexpr int radii = 32, samples_around = 16, azimuths = 64;
+  constexpr int radii = 32, samples_around = 16, azimuths = 128;
   // Radius of the lit film for each azimuth.
   const auto lit_at = [&](double turn) {
     const auto seen = [&](double radius) {
@@ -45,15 +45,17 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool equal_azimuths, std:
     // Denser near the largest lit radius.
     const double fraction = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
     if (equal_azimuths) {
-      for (int k = 0; k <= samples_around / 2; ++k) {  // pupils are symmetric
-        for (const double v : {0.0, 0.85, 0.95, 1.0})
-          add(fraction * lit[0], 0, static_cast<double>(k) / samples_around, v);
+      // Pupils are symmetric. Each radius has other sectors, and the rays of the smallest v pass a central obscuration.
+      const double shift = points(static_cast<std::size_t>(i))[0] - 0.5;
+      for (int k = 0; k <= samples_around / 2; ++k) {
+        const double u = std::clamp((k + shift) / samples_around, 0.0, 0.5);
+        for (const double v : {0.0005, 0.85, 0.95, 0.99}) add(fraction * lit[0], 0, u, v);
       }
       continue;
     }
     // The pupil may be the union over many film points, of which a single point uses a small part: sample all of it,
     // and its edge more densely.
-    for (int k = 0; k < 16 * samples_around; ++k, ++index) {
+    for (int k = 0; k < 32 * samples_around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
       const double azimuth = turn * azimuths;
       const auto before = static_cast<std::size_t>(azimuth);

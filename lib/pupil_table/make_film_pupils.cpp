@@ -12,7 +12,6 @@
 
 #include "core/text.hpp"
 #include "disc_clip.hpp"
-#include "film_grid.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_data.hpp"
 #include "petzval/core/error.hpp"
@@ -127,23 +126,13 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
   data->enclosing = enclosing;
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
   const Lens round = with_iris(lens, {});
-  std::vector<std::vector<PupilPolygon>> polygons(wavelengths);
-  if (round.rotationally_symmetric()) {
-    std::vector<FilmPupils> pupils;
-    for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(round, data->space, w));
-    FilmPolygons found = film_polygons(film_radius, fit, pupils, threads);
-    data->reach = found.lit_radius;
-    polygons = std::move(found.by_wavelength);
-  } else {
-    const FilmGrid grid = film_grid(round, data->space, film_radius);
-    data->set(grid);
-    parallel_for(wavelengths, 1, threads,
-                 [&](std::size_t w, std::size_t) { polygons[w] = grid_polygons(round, data->space, grid, fit, w); });
-  }
-  if (enclosing) expand_to_neighbours(data->compiled, polygons);
-  for (const auto& own : polygons) data->add(own);
+  FilmPolygons pupils = traced_polygons(round, data->space, film_radius, fit, threads);
+  if (enclosing) expand_to_neighbours(data->compiled, pupils.by_wavelength);
+  const bool of_revolution = round.rotationally_symmetric();
+  if (!of_revolution) data->set(pupils.grid);
+  if (of_revolution) data->reach = pupils.grid.height;
+  for (const auto& own : pupils.by_wavelength) data->add(own);
   const FilmPupilTable table(std::move(data));
   return lens.iris().round() ? table : table.with_stop(lens, threads);
 }
@@ -288,20 +277,11 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
   data->primary = data_->primary;
   data->compiled = data_->compiled;
   data->film_radius = tilt.radius;
-  std::vector<std::vector<PupilPolygon>> polygons(wavelengths());
-  if (data_->dimensions == 2 || (data_->images && !data_->images->of_revolution())) {
-    const FilmGrid grid = disc_grid(tilt.radius);
-    data->set(grid);
-    parallel_for(wavelengths(), 1, threads,
-                 [&](std::size_t w, std::size_t) { polygons[w] = tilted_grid_polygons(*this, tilt, grid, w); });
-  } else {
-    std::vector<FilmPupils> pupils;
-    for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
-    FilmPolygons found = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, threads);
-    data->reach = found.lit_radius;
-    polygons = std::move(found.by_wavelength);
-  }
-  for (const auto& own : polygons) data->add(own);
+  const bool of_revolution = data_->images ? data_->images->of_revolution() : data_->dimensions == 1;
+  const FilmPolygons pupils = tilted_polygons(*this, of_revolution, tilt, threads);
+  if (!of_revolution) data->set(pupils.grid);
+  if (of_revolution) data->reach = pupils.grid.height;
+  for (const auto& own : pupils.by_wavelength) data->add(own);
   return FilmPupilTable(std::move(data));
 }
 

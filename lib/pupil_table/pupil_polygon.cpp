@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "pupil/pupil_region.hpp"
@@ -200,15 +199,6 @@ void PupilPolygon::widen(double by) noexcept {
   }
 }
 
-double PupilPolygon::relative_radius(double x, double y) const noexcept {
-  const Position q{x - middle[0], y - middle[1]};
-  const auto at = [this](std::size_t k) { return sector(k); };
-  const std::size_t k = sector_facing(q, at);
-  if (k == polygon_corners) return std::numeric_limits<double>::infinity();
-  const double relative = sector(k).relative_radius(q);
-  return sector(k).obscures(relative * relative) ? -1 : relative;
-}
-
 PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(polygon) {
   before_[0] = 0;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
@@ -226,7 +216,7 @@ Vec2<double> PolygonSampler::operator()(double u, double v) const noexcept {
   return {polygon_.middle[0] + p.x, polygon_.middle[1] + p.y};
 }
 
-PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps) {
+PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
   PupilPolygon polygon;
   polygon.middle = region.middle;
   if (region.empty()) return polygon;
@@ -239,7 +229,7 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   std::vector<double> until{0};
   const auto lit_fraction = [&](std::size_t i) {
     const double from = edge.obscured_from[i % n], to = edge.obscured_to[i % n];
-    return steps == CornerSteps::even && to > from ? 1 - (to * to - from * from) : 1.0;
+    return to > from ? 1 - (to * to - from * from) : 1.0;
   };
   for (std::size_t i = 0; i < n; ++i) {
     const double lit = (lit_fraction(i) + lit_fraction(i + 1)) / 2;
@@ -248,12 +238,11 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   double right = until.back() / 2;  // area of the half at +x
   for (std::size_t i = 0; i < n; ++i) {
     const Position &a = point(i), &b = point(i + 1);
-    if (steps == CornerSteps::even || !(a.x >= 0 && b.x < 0)) continue;
+    if (!(a.x >= 0 && b.x < 0)) continue;
     right = until[i] + a.x / (a.x - b.x) * (until[i + 1] - until[i]);
     break;
   }
   const auto area_before = [&](std::size_t k) {
-    if (steps == CornerSteps::even) return until.back() * static_cast<double>(k) / polygon_corners;
     constexpr std::size_t half = polygon_corners / 2;
     const double fraction = static_cast<double>(k % half) / half;
     return k < half ? fraction * right : right + fraction * (until.back() - right);

@@ -33,10 +33,6 @@ struct PupilPolygon {
 
   /// Scales the corners outwards, and divides the outer radii of obscurations by the same factor.
   void widen(double by) noexcept;
-
-  /// Radial fraction of a position: 0 at the middle, 1 at the outer edge; -1 if the position is obscured, infinite if
-  /// no sector faces it.
-  double relative_radius(double x, double y) const noexcept;
 };
 
 /// Maps uniform numbers to uniform points of a polygon, as PupilSampler does for a PupilBoundary, but with triangles
@@ -60,13 +56,9 @@ enum class PolygonFit {
   equal_area,  ///< has the area of the region
 };
 
-enum class CornerSteps {
-  even,           ///< equal steps of area
-  even_in_halves  ///< in each half, at +x and at -x: corner 32 lies towards -y
-};
-
-/// The polygon of a region, with corners at equal steps of its area.
-PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps = CornerSteps::even);
+/// The polygon of a region, with corners at equal steps of its area in the half at +x and in the half at -x: corner 32
+/// lies towards -y.
+PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit);
 
 /// The polygon with the area of a region about a middle point that each line outwards leaves once.
 /// @param half_y half of the region's extent along y

@@ -3,19 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
+#include <utility>
 
-#include "pupil/boundary_search.hpp"
+#include "pupil/pupil_plane.hpp"
 
 namespace petzval::pupil_table_detail {
+namespace {
 
-void RayClearances::test(std::size_t count, double* clearances) {
-  through_.resize(count);
-  const auto at = [this](std::size_t k) { return components_[k].data(); };
-  passing_(count, {at(0), at(1), at(2), at(3), at(4), at(5)}, wavelength_, through_.data());
-  std::transform(through_.begin(), through_.end(), clearances, pupil_detail::clearance_of);
-}
-
+/// Direction from a centre to the point at which a ray leaves a sphere about the centre.
 Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept {
   const Vec3<double> from = ray.origin - centre;
   const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
@@ -25,9 +24,85 @@ Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, do
   return bearing_of(unit.x, unit.y, unit.z);
 }
 
+Bearing towards(const Vec2<double>& angles) noexcept {
+  const double field = std::hypot(angles.x, angles.y);
+  const Vec2<double> azimuth = field > 0 ? angles / field : Vec2<double>{0, 1};
+  return {field, std::sin(field), std::cos(field), azimuth.x, azimuth.y};
+}
+
 PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept {
   return PupilPlane::facing(centre, bearing.field, {bearing.azimuth_x, bearing.azimuth_y}, reciprocal_distance);
 }
+
+/// A leaving ray as a ray of a scene point: the angles of SceneLayout, and the position in the plane that faces the
+/// point, in the frame of the polygons.
+struct SeenRay {
+  Vec2<double> angles, position;
+};
+template <int dimensions>
+std::vector<SeenRay> seen_from(const Vec3<double>& centre, double reciprocal, const std::vector<Ray<double>>& rays) {
+  std::vector<SeenRay> seen;
+  seen.reserve(rays.size());
+  for (const Ray<double>& ray : rays) {
+    const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
+    const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
+    const Point<double> position = to_grid<dimensions>(bearing, {met.x, met.y});
+    seen.push_back(
+        {{angle_of<dimensions>(bearing, 0), angle_of<dimensions>(bearing, dimensions - 2)}, {position.x, position.y}});
+  }
+  return seen;
+}
+
+/// Bounds of positions.
+struct Bounds {
+  Vec2<double> low{0, 0}, high{0, 0};
+  bool any = false;
+
+  void take(const Vec2<double>& p) noexcept {
+    low = any ? glm::min(low, p) : p;
+    high = any ? glm::max(high, p) : p;
+    any = true;
+  }
+};
+
+/// Search areas for the pupils of the points of one layer: bounds of the rays of these fields.
+std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<SeenRay>& rays, const Vec2<double>& last,
+                                                   const Lattice& points) {
+  std::vector<Bounds> bounds(points.layer());
+  for (const SeenRay& ray : rays) {
+    // A ray is used for the points of its cell and of the adjacent cells.
+    const auto first = [&](int i, std::size_t steps) {
+      return static_cast<std::size_t>(std::max(ray.angles[i] / last[i] * static_cast<double>(steps) - 1, 0.0));
+    };
+    const std::size_t row = first(1, points.steps[1]), column = first(0, points.steps[2]);
+    for (std::size_t i = row; i < std::min(row + 4, points.steps[1] + 1); ++i) {
+      for (std::size_t j = column; j < std::min(column + 4, points.row()); ++j) {
+        bounds[i * points.row() + j].take(ray.position);
+      }
+    }
+  }
+  Vec2<double> half_extent{0, 0};
+  for (const Bounds& b : bounds) half_extent = glm::max(half_extent, (b.high - b.low) / 2.0);
+  const auto known = [](const Bounds& b) { return b.any; };
+  auto last_known = std::find_if(bounds.begin(), bounds.end(), known);
+  std::vector<pupil_detail::PupilGuess> guesses;
+  for (auto b = bounds.begin(); b != bounds.end() && last_known != bounds.end(); ++b) {
+    if (b->any) last_known = b;
+    const Vec2<double> middle = (last_known->low + last_known->high) / 2.0;
+    const double half = std::max((last_known->high.y - last_known->low.y) / 2, 0.05 * half_extent.y);
+    guesses.push_back({points.steps[1] == 0 ? 0 : middle.x, middle.y - 4 * half_extent.y, middle.y + 4 * half_extent.y,
+                       half_extent.x, middle.y, 3 * half});
+  }
+  return guesses;
+}
+
+/// True if a pupil is a ring about its middle.
+bool is_ring(const PupilPolygon& polygon) noexcept {
+  const auto& [middle, corners, from, width] = polygon;
+  return *std::max_element(from.begin(), from.end()) == 0 && *std::min_element(width.begin(), width.end()) > 0;
+}
+
+}  // namespace
 
 double widest_field(const Vec3<double>& centre, const std::vector<Ray<double>>& rays,
                     double reciprocal_radius) noexcept {
@@ -37,5 +112,107 @@ double widest_field(const Vec3<double>& centre, const std::vector<Ray<double>>& 
   }
   return widest;
 }
+
+template <int dimensions>
+SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                                   std::size_t wavelength, const ScenePassing& passing) {
+  using L = SceneLayout<dimensions>;
+  SceneNodes<dimensions> result;
+  std::vector<PupilPolygon>& polygons = result.polygons;
+  constexpr std::size_t distances = 2 * L::distances;
+  std::vector<std::vector<SeenRay>> seen;  // at each distance of a node, and halfway
+  for (std::size_t i = 0; i <= distances; ++i) {
+    seen.push_back(seen_from<dimensions>(centre, steepest * static_cast<double>(i) / distances, rays));
+  }
+  // Last field at each distance, with a margin because the rays are samples.
+  constexpr double field_margin = 1.05, axis_field_rad = 1e-6;
+  for (std::int32_t k = 0; k < L::angles; ++k) {
+    std::array<double, distances + 1> widest{};
+    for (std::size_t i = 0; i <= distances; ++i) {
+      for (const SeenRay& ray : seen[i]) widest[i] = std::max(widest[i], ray.angles[k]);
+      widest[i] = std::min(field_margin * widest[i] + axis_field_rad, std::numbers::pi);
+    }
+    for (std::size_t i = 1; i <= distances; i += 2) {
+      const double lacking = std::max(widest[i] - (widest[i - 1] + widest[i + 1]) / 2, 0.0);
+      widest[i - 1] += lacking, widest[i + 1] += lacking;
+    }
+    for (std::int32_t i = 0; i <= L::distances; ++i) {
+      result.widest[static_cast<std::size_t>(i * L::angles + k)] = widest[static_cast<std::size_t>(2 * i)];
+    }
+  }
+
+  constexpr auto& nodes = SceneNodes<dimensions>::lattice;
+  PupilChart chart{.nodes = nodes,
+                   .points = {{(dimensions == 2 ? 2 : 1) * L::distances, 2 * nodes.steps[1], 2 * nodes.steps[2]}},
+                   .quadrant = dimensions == 3};
+  chart.guesses = [&](PupilChart::Points points) {
+    const double distance = points.front()[0];
+    return guesses_from(seen[static_cast<std::size_t>(std::lround(distance * distances))], result.last(distance),
+                        chart.points);
+  };
+  chart.clearances = [&](PupilChart::Points points) -> pupil_detail::PositionClearances {
+    std::vector<Bearing> bearings;
+    std::vector<PupilPlane> planes;
+    for (const ChartPoint& point : points) {
+      bearings.push_back(towards(result.angles(point)));
+      planes.push_back(plane_facing(centre, bearings.back(), steepest * point[0]));
+    }
+    return [=, &passing, bearings = std::move(bearings), planes = std::move(planes),
+            ray = std::array<std::vector<double>, 6>{},
+            passes = std::vector<std::uint8_t>{}](std::size_t count, const std::uint32_t* which, const double* x,
+                                                  const double* y, double* clearances) mutable {
+      for (auto& component : ray) component.resize(count);
+      passes.resize(count);
+      for (std::size_t r = 0; r < count; ++r) {
+        const Point<double> p = from_grid<dimensions>(bearings[which[r]], {x[r], y[r]});
+        const auto [origin, direction] = planes[which[r]].ray(p.x, p.y);
+        for (int i : {0, 1, 2}) ray[i][r] = origin[i], ray[3 + i][r] = direction[i];
+      }
+      passing(count, {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+              wavelength, passes.data());
+      std::transform(passes.begin(), passes.end(), clearances, pupil_detail::clearance_of);
+    };
+  };
+  polygons = node_polygons(chart, PolygonFit::enclosing);
+
+  // Exclude obscurations only if all pupils are rings. Other obscurations move, and polygons without them are correct
+  // only at the points that are checked.
+  if (!std::all_of(polygons.begin(), polygons.end(), is_ring)) {
+    for (PupilPolygon& polygon : polygons) polygon.obscured.fill(0), polygon.obscured_from.fill(0);
+  }
+  // Expand to the sampled rays. In the outer fields pupils shrink so fast that rays pass beyond positions that are
+  // blocked, where probes do not find them: without the margin there, 9 of 10^6 lines of the Petzval lens are missed.
+  constexpr double ray_margin = 1.06, outer_field_fraction = 0.85;
+  // Rays between the sampled rays may pass closer to the centre of the ring.
+  constexpr double obscuration_scale = 0.8;
+  for (std::size_t i = 0; i <= distances; ++i) {
+    const double distance = static_cast<double>(i) / distances;
+    for (const SeenRay& ray : seen[i]) {
+      const ChartPoint point = result.point(distance, ray.angles);
+      const PolygonWeights at = nodes.weights(point);
+      const bool outer = std::hypot(point[2], dimensions == 2 ? 0 : point[1]) > outer_field_fraction;
+      const double relative = PolygonBetween{polygons, at}.relative_radius(ray.position);
+      if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
+        polygons.clear();
+        return result;
+      }
+      for (std::size_t j = 0; j < at.polygons.size(); ++j) {
+        if (at.weights[j] == 0) continue;
+        PupilPolygon& polygon = polygons[at.polygons[j]];
+        if (relative < 0) {
+          for (double& width : polygon.obscured) width *= obscuration_scale;
+        } else if ((outer ? ray_margin : 1) * relative > 1) {
+          polygon.widen(ray_margin * relative);
+        }
+      }
+    }
+  }
+  return result;
+}
+
+template SceneNodes<2> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
+                                   const ScenePassing&);
+template SceneNodes<3> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
+                                   const ScenePassing&);
 
 }  // namespace petzval::pupil_table_detail

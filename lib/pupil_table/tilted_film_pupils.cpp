@@ -14,78 +14,62 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-/// Properties of the upright pupils that guide the search for the tilted pupils.
-struct Expected {
-  double lit = 0, radius = 0;
-  bool ring = false;
+/// Range of `excess` (FilmTilt) over the film points that belong to a virtual film point or its mirror images.
+struct ExcessRange {
+  double low, high;
+
+  /// @param along largest value of slope . v over the mirror images, or over all azimuths
+  ExcessRange(const FilmTilt& tilt, double along) noexcept {
+    const auto at_end = [&](double value) { return (value - tilt.travel) / (1 + tilt.travel); };
+    low = std::clamp(std::min(-along, at_end(-along)), tilt.min_excess, tilt.max_excess);
+    high = std::clamp(std::max(along, at_end(along)), tilt.min_excess, tilt.max_excess);
+  }
+  double at(double fraction) const noexcept { return low + fraction * (high - low); }
 };
 
-Expected expected_of(const FilmPupilTable& upright, std::size_t wavelength) {
-  Expected result;
-  constexpr int heights = 64;
-  for (int i = 0; i <= heights; ++i) {
-    const FilmPoint film{0, upright.film_radius() * i / heights};
-    const double area = upright.area(film, wavelength);
-    if (!(area > 0)) continue;
-    const Vec2<double> middle = upright.middle(film, wavelength);
-    result.lit = film.y;
-    result.radius = std::max(result.radius, std::sqrt(area / std::numbers::pi));
-    result.ring = result.ring || !upright.contains(film, middle.x, middle.y, wavelength);
+/// Predicts the pupil of a virtual film point from a pupil of the upright film; if that pupil is empty, the film point
+/// is moved towards the axis.
+pupil_detail::PupilGuess guess_of(const FilmPupilTable& upright, const VirtualFilmPoint& virtual_point,
+                                  std::size_t wavelength) {
+  FilmPoint at;
+  Vec2<double> position{0, 0};
+  double area = 0;
+  for (int round = 0; round < 4; ++round) {
+    at = virtual_point.on_upright(position.x, position.y);
+    for (int step = 0; step < 32 && !(area = upright.area(at, wavelength)); ++step) at = {0.95 * at.x, 0.95 * at.y};
+    position = upright.middle(at, wavelength);
   }
-  return result;
+  const double radius = std::sqrt(area / std::numbers::pi), near = 3 * radius, far = 12 * radius;
+  const bool ring = area > 0 && !upright.contains(at, position.x, position.y, wavelength);
+  return {position.x, position.y - far, position.y + far, radius, position.y, near, ring};
 }
 
 }  // namespace
 
-FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength) {
-  const Expected expected = expected_of(upright, wavelength);
-  // Calls find(guesses, clearances) for the points at some heights, row by row.
-  const auto search = [upright, tilt, wavelength, expected](std::span<const double> heights, const auto& find) {
-    const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
-    std::vector<VirtualFilmPoint> fields;
-    // The middle position is the first, because its pupil is the least likely to be empty. Five positions are needed,
-    // because pupils in a plane far from the limiting aperture, as for a thin lens, move by more than their size.
-    for (const double fraction : {0.5, 0.0, 0.25, 0.75, 1.0}) {
-      for (const double height : heights) {
-        const auto within = [&](double value) { return std::clamp(value, tilt.min_excess, tilt.max_excess); };
-        const auto excess = [&](double along) { return std::array{along, (along - tilt.travel) / (1 + tilt.travel)}; };
-        const auto [first_low, last_low] = excess(-steepest * height);
-        const auto [first_high, last_high] = excess(steepest * height);
-        const double low = within(std::min(first_low, last_low)), high = within(std::max(first_high, last_high));
-        fields.push_back({{0, height}, low + fraction * (high - low)});
-      }
+FilmPolygons tilted_polygons(const FilmPupilTable& upright, bool of_revolution, const FilmTilt& tilt, int threads) {
+  const auto virtual_points = [&](FilmPupils::Points points) {
+    std::vector<VirtualFilmPoint> result;
+    for (const auto& [film, layer] : points) {
+      const double along = of_revolution ? std::hypot(tilt.slope_x, tilt.slope_y) * film.y
+                                         : std::abs(tilt.slope_x) * film.x + std::abs(tilt.slope_y) * film.y;
+      result.push_back({film, ExcessRange(tilt, along).at(layer)});
     }
-    std::vector<pupil_detail::PupilGuess> guesses;
-    for (const VirtualFilmPoint& field : fields) {
-      double y = 0;
-      for (int round = 0; round < 2; ++round) {
-        y = upright.middle({0, std::min(field.on_upright(0, y).y, expected.lit)}, wavelength)[1];
-      }
-      const double near = 3 * expected.radius, far = 12 * expected.radius;
-      guesses.push_back({0, y - far, y + far, expected.radius, y, near, expected.ring});
-    }
-    return find(guesses, [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
-                             double* clearances) {
-      const auto from = [&](std::size_t i) { return fields[which[i]]; };
-      upright_clearances(upright, wavelength, count, from, x, y, clearances);
-    });
+    return result;
   };
-  return {[=](std::span<const double> heights) {
-            return search(heights, [&](const auto& guesses, const auto& clearances) {
-              const auto order = pupil_detail::SearchOrder::rows(guesses.size(), heights.size());
-              return pupil_detail::find_regions(guesses, order, region_directions, true, clearances);
-            });
-          },
-          [=](std::span<const double> heights) {
-            const std::vector<bool> points = search(heights, [](const auto& guesses, const auto& clearances) {
-              return pupil_detail::lit_points(guesses, clearances);
-            });
-            std::vector<bool> lit(heights.size(), false);
-            for (std::size_t i = 0; i < points.size(); ++i) {
-              if (points[i]) lit[i % heights.size()] = true;
-            }
-            return lit;
-          }};
+  FilmPupils pupils{.of_revolution = of_revolution, .layers = 5, .wavelengths = upright.wavelengths()};
+  pupils.guesses = [&](FilmPupils::Points points, std::size_t w) {
+    std::vector<pupil_detail::PupilGuess> guesses;
+    for (const VirtualFilmPoint& point : virtual_points(points)) guesses.push_back(guess_of(upright, point, w));
+    return guesses;
+  };
+  pupils.clearances = [&](FilmPupils::Points points, std::size_t w) -> pupil_detail::PositionClearances {
+    return [&upright, w, from = virtual_points(points)](std::size_t count, const std::uint32_t* which, const double* x,
+                                                        const double* y, double* clearances) {
+      upright_clearances(
+          upright, w, count, [&](std::size_t i) { return from[which[i]]; }, x, y, clearances);
+    };
+  };
+  return film_polygons(pupils, tilt.radius, PolygonFit::enclosing, threads);
 }
 
 }  // namespace petzval::pupil_table_detail

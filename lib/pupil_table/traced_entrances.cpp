@@ -37,7 +37,7 @@ EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of
                   {.travel = Travel::to_scene, .wavelengths = {wavelength}});
   };
   return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene, threads),
-                            traced_passing(lens), ClippedBy::apertures, threads);
+                            traced_passing(lens), threads);
 }
 
 }  // namespace petzval
