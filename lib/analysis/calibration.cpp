@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/analysis/calibration.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "analysis/radial_picture.hpp"
+#include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
@@ -36,7 +36,7 @@ double fraction_inside(double radius, double half_width, double half_height) {
 /// Weighted linear least squares: row i of the design has weight weights[i].
 VectorXd solved(const Eigen::MatrixXd& design, const VectorXd& wanted, const VectorXd& weights) {
   const VectorXd roots = weights.cwiseSqrt();
-  return (roots.asDiagonal() * design).colPivHouseholderQr().solve(roots.asDiagonal() * wanted);
+  return core_detail::least_squares(roots.asDiagonal() * design, roots.cwiseProduct(wanted));
 }
 
 class Fits {
