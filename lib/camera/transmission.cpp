@@ -68,8 +68,9 @@ struct Transmission::Data {
   void evaluate(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 T* to) const noexcept {
     WavelengthFits::Buffer<T> between;
-    auto job = fits.job<T>(count, lines, wavelengths, between);
-    job.out[0] = to;
+    auto job = fits.job<T>(count, wavelengths, between);
+    job.in = {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y};
+    job.out = {to};
     loops_of<T>()[loop](job);
     for (std::size_t i = 0; i < count; ++i) to[i] = std::clamp(to[i], static_cast<T>(least), static_cast<T>(most));
   }
@@ -143,7 +144,7 @@ struct Transmission::Data {
     job.scales = polynomial_detail::scales_of<double>(domain);
     job.count = lit.light.size();
     const auto [film_x, film_y, pupil_x, pupil_y] = lit.lines.rays();
-    std::ranges::copy(std::array{film_x, film_y, pupil_x, pupil_y}, job.lines);
+    job.in = {film_x, film_y, pupil_x, pupil_y};
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
       unit[k] = 1;
       job.out[0] = columns.col(k).data();

@@ -65,10 +65,9 @@ class WavelengthFits {
     const R* const found = coefficients(wavelength, between);
     return {found ? found : all.coefficients.data(), found ? all.scales : all.empty_domain};
   }
-  /// The job of a batch, without its results.
+  /// The job of a batch, without its rays.
   template <class R>
-  Job<R> job(std::size_t count, const TwoPlaneRays<const R>& lines, const RayWavelengths& wavelengths,
-             Buffer<R>& between) const noexcept {
+  Job<R> job(std::size_t count, const RayWavelengths& wavelengths, Buffer<R>& between) const noexcept {
     const In<R>& all = std::get<In<R>>(in_);
     const auto [own, scales] = fitted<R>(wavelengths.shared() ? wavelengths.all : Wavelength(0), between);
     return {.coefficients = own,
@@ -78,8 +77,8 @@ class WavelengthFits {
             .modes = {all.modes.data(), modes_, mode_weights_.rows<R>()},
             .scales = scales,
             .count = count,
-            .lines = {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y},
             .wavelengths = wavelengths,
+            .in = {},
             .out = {},
             .fates = nullptr};
   }

@@ -4,6 +4,9 @@
 // several instruction sets (lib/README.md).
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "core/simd.hpp"
 
 namespace petzval::polynomial_detail {
@@ -34,6 +37,29 @@ PETZVAL_INLINE auto horner(const C& c, const T& first, const Rest&... rest) noex
   } else {
     return first * horner<n - 1>(c + term_count(n, sizeof...(rest)), first, rest...) + horner<n>(c, rest...);
   }
+}
+
+/// The same value, followed by N - 1 derivatives with respect to the variables, from the last to the first. Most
+/// multiplications are by the last variable, and there only one derivative must be computed.
+template <int n, std::size_t N, class T, class... Rest>
+PETZVAL_INLINE std::array<T, N> horner_slopes(const double* c, const T& first, const Rest&... rest) noexcept {
+  constexpr std::size_t last = 1 + sizeof...(rest);
+  std::array<T, N> p{};
+  if constexpr (n > 0 && last > 1) {
+    p = horner_slopes<n, N>(c, rest...);
+  } else {
+    p[0] = T(c[0]);
+  }
+  if constexpr (n > 0) {
+    const auto factor = horner_slopes<n - 1, N>(c + term_count(n, sizeof...(rest)), first, rest...);
+    p[0] = first * factor[0] + p[0];
+    p[last] = factor[0];
+    if constexpr (n > 1) {  // else the factor is a constant
+      for (std::size_t k = 1; k < last; ++k) p[k] = first * factor[k] + p[k];
+      p[last] = first * factor[last] + factor[0];
+    }
+  }
+  return p;
 }
 
 }  // namespace

@@ -113,9 +113,10 @@ class Equations {
     const double fx = lines.film_x[i] / domain_.film_radius, fy = lines.film_y[i] / domain_.film_radius;
     const double px = (lines.pupil_x[i] - along_x.pupil_shift * lines.film_x[i]) / along_x.pupil_radius;
     const double py = (lines.pupil_y[i] - along_y.pupil_shift * lines.film_y[i]) / along_y.pupil_radius;
-    const SceneLine line = scene_line(traced.direction(i), traced.origin(i) - Vec3<double>(0, 0, domain_.reference_z));
-    rows_[0].right << line.sx, line.ox;
-    rows_[1].right << line.sy, line.oy;
+    const auto& [x, y, z, dx, dy, dz] = traced.v;
+    const auto [sx, sy, ox, oy] = into_chart<double>({x[i], y[i], z[i] - domain_.reference_z, dx[i], dy[i], dz[i]});
+    rows_[0].right << sx, ox;
+    rows_[1].right << sy, oy;
     const auto fill = [this](Row& row, Eigen::Index k, double term, double film, double pupil) {
       row.left[k] = term * film;
       row.left[count() + k] = term * pupil;

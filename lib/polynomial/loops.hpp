@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops from lines to rays towards the scene or to transmittances; to_scene.cpp defines them for each instruction set.
+// Loops from lines to rays towards the scene or to transmittances, and back from rays to lines; polynomial_loops.cpp
+// defines them for each instruction set.
 #pragma once
 
 #include <array>
@@ -54,10 +55,10 @@ struct Job {
   Modes<R> modes;
   Scales<R> scales;
   std::size_t count;
-  const R* lines[4];  ///< film x, y, pupil x, y
   RayWavelengths wavelengths;
-  R* out[6];       ///< origin and direction of rays, or transmittances
-  RayFate* fates;  ///< of rays
+  std::array<const R*, 6> in;  ///< lines: film x, y, pupil x, y; or rays: origin and direction
+  std::array<R*, 6> out;       ///< rays, transmittances or lines
+  RayFate* fates;              ///< null for transmittances
 };
 
 template <class R, std::size_t symmetries>
@@ -75,19 +76,9 @@ struct PolynomialLoops {
   std::tuple<Loops<float, 2 * degree_count>, Loops<double, 2 * degree_count>> to_scene;
   std::tuple<Loops<float, transmittance_count>, Loops<double, transmittance_count>> transmittances;
   OneToScene one;
+  Loops<double, 2 * degree_count> to_film;  ///< all rays of a call have one wavelength
 };
 
 PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
-
-/// Number of lines of one call of an inverse loop; fills the widest registers.
-inline constexpr std::size_t inverse_block = 8;
-using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
-/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree.
-/// @param found 1 if there is a solution; -1 if there is no solution in the domain; 0 if the iteration does not
-///   converge with full steps
-using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& target, InverseColumns& at,
-                                         std::array<double, inverse_block>& found) noexcept,
-                                degree_count>;
-PETZVAL_WIDEST(InverseLoops, inverse_loops)
 
 }  // namespace petzval::polynomial_detail

@@ -10,13 +10,23 @@
 #include <string>
 #include <utility>
 
+#include "core/dual.hpp"
 #include "core/text.hpp"
 #include "data.hpp"
 #include "modes.hpp"
 #include "petzval/core/error.hpp"
+#include "sums.hpp"
 
 namespace petzval {
 namespace {
+
+using kernel::Dual;
+
+using DualMap = polynomial_detail::Mapped<Dual> (*)(const polynomial_detail::Scales<double>&,
+                                                    const polynomial_detail::Four<Dual>& line,
+                                                    const double* coefficients) noexcept;
+constexpr auto dual_maps = polynomial_detail::by_symmetry_and_degree(
+    []<class Symmetry>(Symmetry) -> DualMap { return polynomial_detail::map<Symmetry, Dual>; });
 
 /// Products of larger values overflow in float; no lens comes near this limit.
 constexpr double max_value = 1e12;
@@ -111,8 +121,9 @@ template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   polynomial_detail::WavelengthFits::Buffer<T> between;
-  auto job = data_->by_wavelength.job<T>(count, lines, wavelengths, between);
-  std::ranges::copy(std::array{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, job.out);
+  auto job = data_->by_wavelength.job<T>(count, wavelengths, between);
+  job.in = {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y};
+  job.out = {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
   job.fates = fates;
   using Loops = polynomial_detail::Loops<T, 2 * polynomial_detail::degree_count>;
   std::get<Loops>(polynomial_detail::polynomial_loops().to_scene)[data_->loop()](job);
@@ -122,6 +133,36 @@ RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
   polynomial_detail::WavelengthFits::Buffer<double> between;
   const auto [coefficients, scales] = data_->by_wavelength.fitted<double>(wavelength, between);
   return polynomial_detail::polynomial_loops().one[data_->loop()](coefficients, scales, line, ray);
+}
+
+RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
+  polynomial_detail::WavelengthFits::Buffer<double> between;
+  const auto [coefficients, scales] = data_->by_wavelength.fitted<double>(wavelength, between);
+  const auto jet = [&](double TwoPlaneRay::*component) {
+    return Dual(line.line.*component, {line.by_u.*component, line.by_v.*component});
+  };
+  const auto [inside, ray] = dual_maps[data_->loop()](
+      scales,
+      {jet(&TwoPlaneRay::film_x), jet(&TwoPlaneRay::film_y), jet(&TwoPlaneRay::pupil_x), jet(&TwoPlaneRay::pupil_y)},
+      coefficients);
+  const auto of_ray = [&rays = ray](const auto& number) -> Ray<double> {
+    return {{number(rays[0]), number(rays[1]), number(rays[2])}, {number(rays[3]), number(rays[4]), number(rays[5])}};
+  };
+  return {inside ? RayFate::transmitted : RayFate::outside_fit, of_ray([](const Dual& x) { return x.a; }),
+          of_ray([](const Dual& x) { return x.v.x; }), of_ray([](const Dual& x) { return x.v.y; })};
+}
+
+void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+  polynomial_detail::WavelengthFits::Buffer<double> between;
+  const std::size_t at_once = wavelengths.shared() ? count : 1;
+  for (std::size_t o = 0; o < count; o += at_once) {
+    auto job = data_->by_wavelength.job<double>(at_once, {.all = wavelengths.at(o)}, between);
+    job.in = {rays.x + o, rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o};
+    job.out = {lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o};
+    job.fates = fates + o;
+    polynomial_detail::polynomial_loops().to_film[data_->loop()](job);
+  }
 }
 
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "chart.hpp"
 #include "core/scalar.hpp"
 #include "horner.hpp"
 #include "loops.hpp"
@@ -13,12 +14,7 @@
 namespace petzval::polynomial_detail {
 namespace {
 
-using core_detail::sum_of_products, kernel::all_of, kernel::select;
-
-/// (fx, fy, px, py): film and pupil point, in mm or scaled to the domain; or (sx, sy, ox, oy): a line (chart.hpp); or
-/// four sums of terms.
-template <class V>
-using Four = std::array<V, 4>;
+using kernel::all_of, kernel::select;
 
 /// Scales a line from mm to the domain.
 template <class V>
@@ -29,6 +25,14 @@ PETZVAL_INLINE Four<V> in_domain(const Scales<kernel::Storage<V>>& scales, const
           (pupil_y - scales.along_y.pupil_shift * film_y) * scales.along_y.per_pupil_radius};
 }
 
+/// Scales a line from the domain to mm.
+template <class V>
+PETZVAL_INLINE Four<V> out_of_domain(const Scales<kernel::Storage<V>>& scales, const Four<V>& at) noexcept {
+  const V film_x = at[0] / scales.per_film_radius, film_y = at[1] / scales.per_film_radius;
+  return {film_x, film_y, at[2] / scales.along_x.per_pupil_radius + scales.along_x.pupil_shift * film_x,
+          at[3] / scales.along_y.per_pupil_radius + scales.along_y.pupil_shift * film_y};
+}
+
 /// True if the squares of the film and the pupil point are at most `square`.
 template <class V>
 PETZVAL_INLINE kernel::Mask<V> within(const Four<V>& x, double square) noexcept {
@@ -36,26 +40,11 @@ PETZVAL_INLINE kernel::Mask<V> within(const Four<V>& x, double square) noexcept 
   return all_of(sum_of_products(x[0], x[0], x[1], x[1]) <= limit, sum_of_products(x[2], x[2], x[3], x[3]) <= limit);
 }
 
-/// Origin, relative to the reference point, and direction.
-template <class V>
-using LocalRay = std::array<V, 6>;
-
-/// Converts a line from the chart to a ray (chart.hpp). The line (0, 0, 0, 0) is the axis.
-template <class V>
-PETZVAL_INLINE LocalRay<V> out_of_chart(const Four<V>& line) noexcept {
-  using R = kernel::Storage<V>;
-  const auto& [sx, sy, ox, oy] = line;
-  const V square = sum_of_products(sx, sx, sy, sy);
-  const V twice = R(2) / (square + R(1));
-  const V along = twice * sum_of_products(sx, ox, sy, oy);
-  return {ox - sx * along, oy - sy * along, along, twice * sx, twice * sy, twice * (square - R(1)) / R(2)};
-}
-
 /// s = A f + B p and o = C f + D p, with A to D polynomials of f.f, f.p and p.p.
 template <int n>
 struct OfRevolution {
   static constexpr int terms = term_count(n, 3), coefficients = 4 * terms, invariant_terms = terms;
-  static constexpr std::size_t sum_count = 4, outputs = 6;
+  static constexpr std::size_t sections = 1, sum_count = 4, outputs = 6;
 
   template <class V>
   struct Variables {
@@ -96,7 +85,7 @@ template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
   static constexpr int invariant_terms = terms + term_count(n - 1, 4) + term_count(n - 2, 4);
-  static constexpr std::size_t sum_count = 4, outputs = 6;
+  static constexpr std::size_t sections = 2, sum_count = 4, outputs = 6;
 
   template <class V>
   using Variables = Four<V>;
