@@ -139,49 +139,44 @@ inline void with_planes(const TiltedBounds<T>& tilted, const Body& body) noexcep
 
 template <class T>
 void to_virtual(const TiltedBounds<T>& tilted, std::size_t count, const T* film_x, const T* film_y, T* virtual_x,
-                T* virtual_y) noexcept {
+                T* virtual_y, T* excess) noexcept {
   with_planes(tilted, [&](const auto& plane_of) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
       const auto [x, y] = virtual_of(plane_of(i), film_x[i], film_y[i]);
-      virtual_x[i] = x, virtual_y[i] = y;
+      virtual_x[i] = x, virtual_y[i] = y, excess[i] = distance_excess(plane_of(i), x, y);
     }
   });
 }
 
 template <class T>
-void to_upright(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
-                const T* pupil_x, const T* pupil_y, T* film_x, T* film_y) noexcept {
-  with_planes(tilted, [&](const auto& plane_of) {
-    PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [x, y] = upright_of(plane_of(i), virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
-      film_x[i] = x, film_y[i] = y;
-    }
-  });
+void to_upright(std::size_t count, const T* excess, const T* virtual_x, const T* virtual_y, const T* pupil_x,
+                const T* pupil_y, T* film_x, T* film_y) noexcept {
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [x, y] = upright_of(excess[i], virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+    film_x[i] = x, film_y[i] = y;
+  }
 }
 
 template <class T>
-void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
-                  const T* pupil_x, const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept {
+void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* excess, const T* pupil_x, const T* pupil_y,
+                  RayFate* fates, const CameraRays<T>& rays) noexcept {
   T* const weights = rays.weights;
   with_planes(tilted, [&](const auto& plane_of) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const T facing = facing_of(plane_of(i), virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+      const T facing = facing_of(plane_of(i), excess[i], pupil_x[i], pupil_y[i]);
       const bool in_front = facing > T(0);
       weights[i] = in_front ? weights[i] * facing : T(0);
       const bool behind = !in_front & (fates[i] == RayFate::transmitted);
       fates[i] = behind ? RayFate::vignetted : fates[i];
     }
-    if (T* const pdf = rays.pdf_direction) {
-      PETZVAL_INDEPENDENT
-      for (std::size_t i = 0; i < count; ++i) {
-        const T near = T(1) + distance_excess(plane_of(i), virtual_x[i], virtual_y[i]);
-        pdf[i] /= near * near;
-      }
-    }
   });
+  if (T* const pdf = rays.pdf_direction) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < count; ++i) pdf[i] /= (T(1) + excess[i]) * (T(1) + excess[i]);
+  }
 }
 
 template <class T>

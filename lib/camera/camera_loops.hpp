@@ -36,14 +36,14 @@ struct CameraLoopsOf {
   /// @param scale one value for each ray; 0 if the wavelength is not covered
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
-  /// For a tilted film: virtual points of film points, upright film points of lines through the pupil, and conversion
-  /// of upright weights to weights of the tilted film.
-  void (*to_virtual)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* virtual_x,
-                     T* virtual_y) noexcept;
-  void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,
+  /// For a tilted film: virtual points of film points and their distance_excess(), upright film points of lines through
+  /// the pupil, and conversion of upright weights to weights of the tilted film.
+  void (*to_virtual)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* virtual_x, T* virtual_y,
+                     T* excess) noexcept;
+  void (*to_upright)(std::size_t, const T* excess, const T* virtual_x, const T* virtual_y, const T* pupil_x,
                      const T* pupil_y, T* film_x, T* film_y) noexcept;
-  void (*weigh_tilted)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,
-                       const T* pupil_y, RayFate*, const CameraRays<T>&) noexcept;
+  void (*weigh_tilted)(const TiltedBounds<T>&, std::size_t, const T* excess, const T* pupil_x, const T* pupil_y,
+                       RayFate*, const CameraRays<T>&) noexcept;
 };
 struct CameraLoops {
   CameraLoopsOf<float> single;

@@ -10,6 +10,12 @@ namespace petzval::camera_detail {
 
 using core_detail::FilmBounds;
 
+/// A point in a plane across the axis.
+template <class V>
+struct PlanePoint {
+  V x, y;
+};
+
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
@@ -54,39 +60,44 @@ inline RayFate fate_of(RayFate fate, bool kept, bool covered, bool seen) noexcep
   return kept ? fate : RayFate::outside_film;
 }
 
-template <class T>
-struct PlanePoint {
-  T x, y;
-};
-
 /// The virtual point of a film point.
-/// @param plane a TiltedPlane or its numbers in T
-template <class T, class Plane>
-inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
-  const T per_distance = T(1) / ((T(1) + plane.travel) + (plane.depth_by_x * x + plane.depth_by_y * y));
+/// @param plane a TiltedPlane or its numbers in another type
+template <class V, class Plane>
+inline PlanePoint<V> virtual_of(const Plane& plane, const V& x, const V& y) noexcept {
+  const V per_distance = 1 / ((1 + plane.travel) + (plane.depth_by_x * x + plane.depth_by_y * y));
   return {(plane.x_by_x * x + plane.x_by_y * y) * per_distance, plane.y_by_y * y * per_distance};
 }
 
 /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
-template <class T, class Plane>
-inline T distance_excess(const Plane& plane, T virtual_x, T virtual_y) noexcept {
-  return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (T(1) + plane.travel);
+template <class V, class Plane>
+inline V distance_excess(const Plane& plane, const V& virtual_x, const V& virtual_y) noexcept {
+  return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (1 + plane.travel);
 }
 
 /// Intersection with the upright film of the ray of a virtual point through a position in the pupil.
-template <class T, class Plane>
-inline PlanePoint<T> upright_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T excess = distance_excess(plane, virtual_x, virtual_y);
+/// @param excess distance_excess() of the virtual point
+template <class V>
+inline PlanePoint<V> upright_of(const V& excess, const V& virtual_x, const V& virtual_y, const V& pupil_x,
+                                const V& pupil_y) noexcept {
   return {virtual_x - excess * pupil_x, virtual_y - excess * pupil_y};
 }
 
 /// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; zero or negative
 /// if the ray meets the back of the film.
-template <class T, class Plane>
-inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T near = T(1) + distance_excess(plane, virtual_x, virtual_y);
-  const T front = (T(1) + plane.travel) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
+template <class V, class Plane>
+inline V facing_of(const Plane& plane, V excess, V pupil_x, V pupil_y) noexcept {
+  const V near = 1 + excess;
+  const V front = (1 + plane.travel) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
   return plane.cosine * front * near * near * near;
+}
+
+/// For a pinhole in front of a tilted film: the point of the upright film with the ray of a film point, divided by the
+/// virtual point. Each film point has one ray, and the weights of the complete pupil. The ray passes the centre of the
+/// exit pupil of the thick lens.
+/// @param shift from ParaxialModel::pinhole_shifts()
+template <class V>
+inline V chief_scale(const V& excess, double shift) noexcept {
+  return 1 / (1 + excess * shift);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "camera/moving_least_squares.hpp"
+#include "camera_steps.hpp"
 #include "core/dual.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
@@ -401,7 +402,7 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
                                  data.film.shift_y_mm + up * data.film.height_mm};
       const TiltedPlane upright, &lies = plane ? *plane : upright;
       const FilmPoint from_pupil = lies.virtual_point(film_point);
-      const double excess = lies.distance_excess(from_pupil), scale = virtual_scale(lies, from_pupil, at.middle);
+      const double excess = lies.distance_excess(from_pupil), scale = chief_scale(excess, at.middle);
       const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (scale * at.maps.chief_slope);
       const FilmPointFocus<Dual> point = data.point(film_point, excess, lies.distance_excess_at(film_point).by);
       const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);

@@ -50,13 +50,11 @@ void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavel
 
 /// Finds points of the upright film whose chief rays equal the rays of a pinhole in front of a tilted film.
 template <class T>
-void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* times,
+void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* excess,
                  const T* virtual_x, const T* virtual_y, T* film_x, T* film_y) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    const double shift = view.wavelengths.pinhole_shift(wavelengths.at(i));
-    const TiltedPlane plane = view.tilted->plane(times ? times[i] : 0);
-    const double virtual_ratio = virtual_scale(plane, {virtual_x[i], virtual_y[i]}, shift);
-    film_x[i] = static_cast<T>(virtual_x[i] * virtual_ratio), film_y[i] = static_cast<T>(virtual_y[i] * virtual_ratio);
+    const double scale = chief_scale(double{excess[i]}, view.wavelengths.pinhole_shift(wavelengths.at(i)));
+    film_x[i] = static_cast<T>(virtual_x[i] * scale), film_y[i] = static_cast<T>(virtual_y[i] * scale);
   }
 }
 
@@ -90,20 +88,6 @@ void weigh_pupil(const FilmView& view, std::size_t count, std::size_t valid_coun
   }
 }
 
-/// Bends rays to the focus of their film points.
-template <class T>
-void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& samples, const RayArrays<T>& rays) noexcept {
-  alignas(64) Values<T> film_x, film_y, excess;
-  camera_loops().of<T>().keep_on_film(core_detail::bounds_of<T>(view.film), count, samples.film_x, samples.film_y,
-                                      film_x.data(), film_y.data());
-  for (std::size_t i = 0; i < count && view.tilted; ++i) {
-    const TiltedPlane plane = view.tilted->plane(samples.times ? samples.times[i] : 0);
-    excess[i] = static_cast<T>(plane.distance_excess(plane.virtual_point({film_x[i], film_y[i]})));
-  }
-  view.focus.bend(count, film_x.data(), film_y.data(), view.tilted ? excess.data() : nullptr, samples.wavelengths,
-                  rays);
-}
-
 /// Samples one block. Only the first `valid_count` rays get weights.
 /// @param n a multiple of the number of lanes, so that a ray has the same bits at every position
 template <class T>
@@ -118,7 +102,6 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
   alignas(64) Values<T> film_x, film_y, x, y, areas, scales;
   std::array<RayFate, block> local_fates;
   RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
-  const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
   fill_scales(n, view.wavelengths, wavelengths, scales.data());
   const T *pupil_u = samples.pupil_u, *pupil_v = samples.pupil_v;
   alignas(64) Values<T> drawn_u, drawn_v, densities;
@@ -127,47 +110,52 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
     pupil_u = drawn_u.data(), pupil_v = drawn_v.data();
   }
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
-  alignas(64) Values<T> transmittances;
-  const auto trace = [&] {
-    view.model.to_scene(n, lines, wavelengths, rays.rays, fates, view.transmission.light(), transmittances.data());
-    if (view.focus) bend(view, n, samples, rays.rays);
-    if (view.moves_rays()) {
-      loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
+
+  // Lines in terms of the upright film, and the lines that leave the lens: they differ for a pinhole.
+  TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()}, leaving = lines;
+  alignas(64) Values<T> virtual_x, virtual_y, excess, upright_x, upright_y, chief_x, chief_y;
+  if (!tilted) {
+    pupils.sample(n, film_x.data(), film_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(), areas.data());
+  } else {
+    loops.to_virtual(bounds_of(*tilted, samples.times), n, film_x.data(), film_y.data(), virtual_x.data(),
+                     virtual_y.data(), excess.data());
+    tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(),
+                            areas.data());
+    loops.to_upright(n, excess.data(), virtual_x.data(), virtual_y.data(), x.data(), y.data(), upright_x.data(),
+                     upright_y.data());
+    lines = leaving = {upright_x.data(), upright_y.data(), x.data(), y.data()};
+    if (view.model.pinhole()) {
+      find_chiefs(n, view, wavelengths, excess.data(), virtual_x.data(), virtual_y.data(), chief_x.data(),
+                  chief_y.data());
+      leaving = {chief_x.data(), chief_y.data(), x.data(), y.data()};
     }
-  };
-  const auto weigh = [&] {
-    loops.weigh(bounds, static_cast<T>(view.depth), valid_count, samples.film_x, samples.film_y, lines, areas.data(),
-                scales.data(), fates, rays);
-    if (view.weights)
-      weigh_pupil(view, n, valid_count, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
-    if (!view.transmission) return;
+  }
+
+  alignas(64) Values<T> transmittances;
+  view.model.to_scene(n, leaving, wavelengths, rays.rays, fates, view.transmission.light(), transmittances.data());
+  if (view.focus) {
+    view.focus.bend(n, film_x.data(), film_y.data(), tilted ? excess.data() : nullptr, wavelengths, rays.rays);
+  }
+  if (view.moves_rays()) {
+    loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
+  }
+
+  if (tilted && decide(pupils, view.model)) keep_within(n, pupils, lines, wavelengths, fates);
+  loops.weigh(bounds, static_cast<T>(view.depth), valid_count, samples.film_x, samples.film_y, lines, areas.data(),
+              scales.data(), fates, rays);
+  if (view.weights)
+    weigh_pupil(view, n, valid_count, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
+  if (view.transmission) {
     view.transmission.fill(n, lines, wavelengths, transmittances.data());
     for (std::size_t i = 0; i < valid_count; ++i) {
       rays.weights[i] *= transmittances[i];
       const bool dark = fates[i] == RayFate::transmitted && !(rays.weights[i] > T(0));
       fates[i] = dark ? RayFate::vignetted : fates[i];
     }
-  };
-  if (!tilted) {
-    pupils.sample(n, film_x.data(), film_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(), areas.data());
-    trace();
-    weigh();
-    return;
   }
-  const TiltedBounds<T> plane = bounds_of(*tilted, samples.times);
-  alignas(64) Values<T> virtual_x, virtual_y;
-  loops.to_virtual(plane, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
-  tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(),
-                          areas.data());
-  if (view.model.pinhole()) {
-    find_chiefs(n, view, wavelengths, samples.times, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
-    trace();
+  if (tilted) {
+    loops.weigh_tilted(bounds_of(*tilted, samples.times), valid_count, excess.data(), x.data(), y.data(), fates, rays);
   }
-  loops.to_upright(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
-  if (!view.model.pinhole()) trace();
-  if (decide(pupils, view.model)) keep_within(n, pupils, lines, wavelengths, fates);
-  weigh();
-  loops.weigh_tilted(plane, valid_count, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
 
 /// Samples fewer rays than lanes: pads them with copies of the last sample.
@@ -314,9 +302,8 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
   if (with_derivatives) {
     s.leaving = pinhole_line(s.plane, {x, y}, shift);
   } else {
-    const double virtual_ratio = virtual_scale(s.plane, s.virtual_point, shift);
-    s.leaving.line.film_x = s.virtual_point.x * virtual_ratio,
-    s.leaving.line.film_y = s.virtual_point.y * virtual_ratio;
+    const double scale = chief_scale(s.plane.distance_excess(s.virtual_point), shift);
+    s.leaving.line.film_x = s.virtual_point.x * scale, s.leaving.line.film_y = s.virtual_point.y * scale;
   }
   return s;
 }

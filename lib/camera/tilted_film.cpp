@@ -198,7 +198,7 @@ TiltedPlane::DistanceExcess TiltedPlane::distance_excess_at(const FilmPoint& fil
 }
 
 TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& position) const noexcept {
-  const auto [x, y] = upright_of(*this, point.x, point.y, position.x, position.y);
+  const auto [x, y] = upright_of(distance_excess(point), point.x, point.y, position.x, position.y);
   return {x, y, position.x, position.y};
 }
 
@@ -210,7 +210,7 @@ std::optional<FilmPoint> TiltedPlane::virtual_point_of(const TwoPlaneRay& ray) c
 }
 
 double TiltedPlane::weight(const FilmPoint& point, const FilmPoint& position) const noexcept {
-  return std::max(facing_of(*this, point.x, point.y, position.x, position.y), 0.0);
+  return std::max(facing_of(*this, distance_excess(point), position.x, position.y), 0.0);
 }
 
 TiltedPlane TiltedFilm::plane(double time) const noexcept {
