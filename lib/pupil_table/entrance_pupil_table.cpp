@@ -13,7 +13,6 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "polygon_clearance.hpp"
 #include "pupil/surface_box.hpp"
 #include "scene_loops.hpp"
 #include "scene_nodes.hpp"
@@ -35,13 +34,12 @@ double cone(double radius, double distance) noexcept {
 }
 
 /// Expands the nodes of each wavelength to contain the pupils up to halfway to the adjacent wavelengths.
-template <int dimensions>
-void expand_to_neighbours(std::vector<SceneNodes<dimensions>>& tables,
-                          const lens_detail::CompiledWavelengths& compiled) {
-  const std::vector<SceneNodes<dimensions>> own = tables;
-  const auto expand = [&](SceneNodes<dimensions>& table, const SceneNodes<dimensions>& other) {
+template <int angles>
+void expand_to_neighbours(std::vector<SceneNodes<angles>>& tables, const lens_detail::CompiledWavelengths& compiled) {
+  const std::vector<SceneNodes<angles>> own = tables;
+  const auto expand = [&](SceneNodes<angles>& table, const SceneNodes<angles>& other) {
     if (table.polygons.empty() || other.polygons.empty()) return;
-    constexpr auto& lattice = SceneNodes<dimensions>::lattice;
+    constexpr auto& lattice = SceneNodes<angles>::lattice;
     for (std::size_t node = 0; node < lattice.size(); ++node) {
       const ChartPoint own_point = lattice.point(node);
       // The same field, limited to the last field of the other wavelength.
@@ -84,17 +82,17 @@ struct EntrancePupilTable::Data {
 
   /// Makes the nodes of all wavelengths.
   /// @param of_wavelength function; of_wavelength(w) makes the nodes of wavelength w
-  template <int dimensions, class OfWavelength>
+  template <int angles, class OfWavelength>
   void fill(std::size_t wavelengths, int threads, const OfWavelength& of_wavelength) {
-    std::vector<SceneNodes<dimensions>> tables(wavelengths);
+    std::vector<SceneNodes<angles>> tables(wavelengths);
     parallel_for(wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
       if (balls[w] > 0) tables[w] = of_wavelength(w);
     });
     if (compiled.count() == wavelengths) expand_to_neighbours(tables, compiled);
-    for (SceneNodes<dimensions>& table : tables) {
+    for (SceneNodes<angles>& table : tables) {
       if (table.polygons.empty()) {
         table.widest.fill(0);
-        table.polygons.resize(SceneLayout<dimensions>::nodes);
+        table.polygons.resize(SceneNodes<angles>::lattice.size());
       }
       widest.insert(widest.end(), table.widest.begin(), table.widest.end());
       for (const PupilPolygon& p : table.polygons) add(p);
@@ -105,27 +103,28 @@ struct EntrancePupilTable::Data {
     obscured = obscured || p.is_obscured();
   }
 
-  template <int dimensions>
-  SceneGrid<dimensions> grid() const noexcept {
-    return {nodes.data(), widest.data(), static_cast<std::int32_t>(balls.size()), centre.z, steepest,
-            front_half,   obscured};
+  template <int angles>
+  SceneGrid<angles> grid() const noexcept {
+    SceneGrid<angles> result;
+    result.chart = {widest.data(), centre.z, steepest, front_half};
+    result.nodes = nodes.data();
+    result.wavelengths = static_cast<std::int32_t>(balls.size());
+    result.obscured = obscured;
+    return result;
   }
   /// Calls body(grid).
   template <class Body>
   auto with_grid(const Body& body) const noexcept {
-    return cylinders ? body(grid<3>()) : body(grid<2>());
+    return cylinders ? body(grid<2>()) : body(grid<1>());
   }
-  /// Calls body(polygon) with the ScenePolygon of a point. Returns false if the grid has no polygon for the point.
+  /// Calls body(grid, cell) with the cell of a point. Returns false if the grid has no polygon for the point.
   template <class Body>
-  bool with_polygon(const Vec3<double>& point, std::size_t wavelength, const Body& body) const noexcept {
+  bool with_cell(const Vec3<double>& point, std::size_t wavelength, const Body& body) const noexcept {
     return with_grid([&](const auto& grid) {
-      constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
-      SceneCellPositions<1, dimensions> cell_positions;
-      const auto w = static_cast<std::int32_t>(wavelength);
-      find_scene_cell_positions(grid, &point.x, &point.y, &point.z, &w, cell_positions);
-      if (cell_positions.known[0] == 0) return false;
-      body(ScenePolygon<true, 1, dimensions>{grid.nodes, cell_positions, 0});
-      return true;
+      const auto cell =
+          grid.chart.template find<double>(point.x, point.y, point.z, true, static_cast<std::int32_t>(wavelength));
+      if (cell.known) body(grid, cell);
+      return cell.known;
     });
   }
 
@@ -144,6 +143,14 @@ struct EntrancePupilTable::Data {
   }
   /// Samples the cone of the ball, for points without a pupil in the grid.
   EntranceSample in_cone(const Vec3<double>& point, std::size_t wavelength, double u, double v) const noexcept;
+  /// A sample of the grid, or of the cone if the grid has none.
+  /// @param number function; number(k) is number k of scene_sample()
+  template <class Number>
+  EntranceSample in_grid(const Number& number, const Vec3<double>& point, std::size_t wavelength, double u,
+                         double v) const noexcept {
+    if (!(number(7) > 0)) return in_cone(point, wavelength, u, v);
+    return {{number(0), number(1), number(2)}, {number(3), number(4), number(5)}, number(6), number(7)};
+  }
 };
 
 double EntrancePupilTable::Data::farthest(const std::vector<Ray<double>>& rays, double z) const noexcept {
@@ -184,8 +191,8 @@ EntranceSample EntrancePupilTable::Data::in_cone(const Vec3<double>& point, std:
   const Vec3<double> unit = from_centre / distance;
   const double solid = cone(balls[wavelength], distance), less = std::clamp(v, 0.0, 1.0) * solid / (2 * pi);
   const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u;
-  const RayToLens across =
-      ray_to_lens(bearing_of(unit.x, unit.y, unit.z), 1, {sine * std::cos(angle), sine * std::sin(angle)});
+  const auto across =
+      ray_to_lens(bearing_of(unit.x, unit.y, unit.z), 1.0, {sine * std::cos(angle), sine * std::sin(angle)});
   const Vec3<double> direction = unit * (less - 1) + Vec3<double>{across.x, across.y, across.z};
   const double far = std::max(distance * (1 - less), 0.0);
   return {point + direction * far, direction, far, 1 / solid};
@@ -223,9 +230,9 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   }
   data->cylinders = !lens.rotationally_symmetric();
   data->with_grid([&](const auto& grid) {
-    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
-    data->fill<dimensions>(rays.size(), threads, [&](std::size_t w) {
-      return scene_nodes<dimensions>(data->centre, data->steepest, rays[w], w, passing);
+    constexpr int angles = std::decay_t<decltype(grid.chart)>::angles;
+    data->fill<angles>(rays.size(), threads, [&](std::size_t w) {
+      return scene_nodes<angles>(data->centre, data->steepest, rays[w], w, passing);
     });
   });
   data_ = std::move(data);
@@ -253,41 +260,49 @@ bool EntrancePupilTable::in_front(const Vec3<double>& point) const noexcept { re
 
 void EntrancePupilTable::sample(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
                                 const RayWavelengths& wavelengths, const EntranceRays& rays) const noexcept {
-  constexpr std::size_t block = 64;
+  const auto put = [&rays](std::size_t k, const EntranceSample& s) {
+    rays.x[k] = s.origin.x, rays.y[k] = s.origin.y, rays.z[k] = s.origin.z;
+    rays.dx[k] = s.direction.x, rays.dy[k] = s.direction.y, rays.dz[k] = s.direction.z;
+    rays.distance[k] = s.distance, rays.pdf[k] = s.pdf;
+  };
+  if (count == 1) {
+    put(0, sample(*points, *u, *v, wavelengths.at(0)));
+    return;
+  }
+  constexpr std::size_t block = 64, registers = 8;
   const Data& data = *data_;
-  std::array<double, block> x, y, z;
-  std::array<std::size_t, block> positions;
-  std::array<std::int32_t, block> known;
+  alignas(64) double x[block], y[block], z[block], own_u[block], own_v[block], found[8][block];
+  alignas(64) std::int64_t known[block];
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
-    const Vec3<double>* const own = points + begin;
-    for (std::size_t i = 0; i < n; ++i) {
-      positions[i] = data.position(wavelengths.at(begin + i));
-      known[i] = positions[i] < data.balls.size() ? static_cast<std::int32_t>(positions[i]) : -1;
-      x[i] = own[i].x, y[i] = own[i].y, z[i] = own[i].z;
+    for (std::size_t i = 0; i < (n + registers - 1) / registers * registers; ++i) {
+      const std::size_t k = begin + std::min(i, n - 1), position = data.position(wavelengths.at(k));
+      known[i] = position < data.balls.size() ? static_cast<std::int64_t>(position) : -1;
+      x[i] = points[k].x, y[i] = points[k].y, z[i] = points[k].z, own_u[i] = u[k], own_v[i] = v[k];
     }
-    const EntranceRays found = rays.from(begin);
     data.with_grid([&](const auto& grid) {
-      scene_loops().of<std::decay_t<decltype(grid)>::dimensions>()(grid, n, x.data(), y.data(), z.data(), u + begin,
-                                                                   v + begin, known.data(), found);
+      std::get<SceneLoop<std::decay_t<decltype(grid.chart)>::angles>>(scene_loops().loops)(
+          grid, n, {x, y, z, own_u, own_v, known},
+          {found[0], found[1], found[2], found[3], found[4], found[5], found[6], found[7]});
     });
     for (std::size_t i = 0; i < n; ++i) {
-      if (found.pdf[i] > 0) continue;
-      const EntranceSample s = data.in_cone(own[i], positions[i], u[begin + i], v[begin + i]);
-      found.x[i] = s.origin.x, found.y[i] = s.origin.y, found.z[i] = s.origin.z;
-      found.dx[i] = s.direction.x, found.dy[i] = s.direction.y, found.dz[i] = s.direction.z;
-      found.distance[i] = s.distance, found.pdf[i] = s.pdf;
+      const std::size_t k = begin + i;
+      put(k, data.in_grid([&](std::size_t j) { return found[j][i]; }, points[k], static_cast<std::size_t>(known[i]),
+                          u[k], v[k]));
     }
   }
 }
 
 EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, double v,
                                           Wavelength wavelength) const noexcept {
-  EntranceSample s;
-  auto& [origin, direction, distance, pdf] = s;
-  sample(1, &point, &u, &v, {.all = wavelength},
-         {&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z, &distance, &pdf});
-  return s;
+  const Data& data = *data_;
+  const std::size_t position = data.position(wavelength);
+  const bool known = position < data.balls.size();
+  return data.with_grid([&](const auto& grid) {
+    const auto found = scene_sample<true, double>(grid, point.x, point.y, point.z, u, v, known,
+                                                  known ? static_cast<std::int32_t>(position) : 0);
+    return data.in_grid([&](std::size_t k) { return found[k]; }, point, position, u, v);
+  });
 }
 
 void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
@@ -296,23 +311,23 @@ void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, co
   const std::size_t position = data.position(wavelength);
   std::fill_n(samples, count, EntranceSample{.origin = data.centre});
   if (!data.sees(point, position)) return;
-  const bool known = data.with_polygon(point, position, [&](const auto& polygon) {
+  const bool known = data.with_cell(point, position, [&](const auto& grid, const auto& cell) {
     std::array<Sector<double>, polygon_corners> sectors;
     std::array<double, polygon_corners + 1> before{};
     for (std::size_t k = 0; k < polygon_corners; ++k) {
-      sectors[k] = polygon.sector(static_cast<std::int32_t>(k));
+      sectors[k] = sector_of<true, double>(grid, cell, static_cast<std::int32_t>(k));
       before[k + 1] = before[k] + std::max(sectors[k].area(), 0.0);
     }
     const double whole = before[polygon_corners];
+    const Point<double> middle = middle_of<double>(grid, cell);
     for (std::size_t i = 0; i < count && whole > 0; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
       const double area = std::clamp(u[i], 0.0, 1.0) * whole, squared_radius = std::clamp(v[i], 0.0, 1.0);
       const std::size_t k = sector_of_area(area, [&before](std::size_t j) { return before[j]; });
       const double own = before[k + 1] - before[k];
       const double along = own > 0 ? std::clamp((area - before[k]) / own, 0.0, 1.0) : 0;
-      const Point<double> in_grid =
-          polygon.middle() + sectors[k].at(std::sqrt(sectors[k].squared_radius(squared_radius)), along);
-      const RayToLens ray = polygon.ray(in_grid);
+      const Point<double> in_grid = middle + sectors[k].at(std::sqrt(sectors[k].squared_radius(squared_radius)), along);
+      const auto ray = ray_to_lens(cell.bearing, cell.distance, grid.chart.to_film(cell, in_grid));
       samples[i] = {data.centre + Vec3<double>{ray.x, ray.y, ray.z},
                     {ray.dx, ray.dy, ray.dz},
                     ray.distance,
@@ -339,14 +354,13 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray
   }
   if (!(cosine > 0)) return 0;
   double density = 0;
-  data.with_polygon(point, position, [&](const auto& polygon) {
+  data.with_cell(point, position, [&](const auto& grid, const auto& cell) {
     const Vec3<double> met = core_detail::meet_plane(ray, data.centre, unit) - data.centre;
-    const Point<double> q = polygon.position({met.x, met.y, met.z}) - polygon.middle();
-    const std::size_t k = sector_towards(polygon, q);
-    if (k == polygon_corners) return;
-    const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
-    const double relative = squared(sector.relative_radius(q));
-    if (!(relative > 1 || sector.obscures(relative))) density = density_in(sector);
+    const auto& b = cell.bearing;
+    const Point<double> at{b.cosine * met.x - b.sine * met.y,
+                           b.field_cosine * (b.sine * met.x + b.cosine * met.y) + b.field_sine * met.z};
+    const double area = locate<true, false, double>(grid, cell, at).area;
+    density = area > 0 ? 1 / area : 0;
   });
   return squared(distance) * density / (cosine * squared(cosine));
 }

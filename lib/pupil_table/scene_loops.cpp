@@ -4,24 +4,30 @@
 
 #include <type_traits>
 
+#include "core/lane_table.hpp"
+
 namespace petzval::pupil_table_detail {
 namespace {
 
-template <int dimensions>
-void sample(const SceneGrid<dimensions>& grid, std::size_t count, const double* x, const double* y, const double* z,
-            const double* u, const double* v, const std::int32_t* wavelength, const EntranceRays& rays) noexcept {
-  std::size_t begin = 0;
-  const auto blocks = [&](auto block, auto obscured) {
-    constexpr std::size_t size = decltype(block)::value;
-    for (; begin + size <= count; begin += size) {
-      sample_scene_block<size, decltype(obscured)::value>(grid, x + begin, y + begin, z + begin, u + begin, v + begin,
-                                                          wavelength + begin, rays.from(begin));
-    }
-  };
+using core_detail::load;
+using core_detail::store;
+
+template <int angles>
+void sample(const SceneGrid<angles>& given, std::size_t count, const SceneSamples& from,
+            double* const (&to)[8]) noexcept {
+  using V = core_detail::Lanes<double>;
+  const SceneGrid<angles> grid = given;  // a copy that no output can alias
   const auto all = [&](auto obscured) {
-    blocks(std::integral_constant<std::size_t, 32>(), obscured);
-    blocks(std::integral_constant<std::size_t, 8>(), obscured);  // fills the widest registers
-    blocks(std::integral_constant<std::size_t, 1>(), obscured);
+    for (std::size_t o = 0; o < count; o += V::width) {
+      Index<V> wavelength;
+      __builtin_memcpy(&wavelength, from.wavelength + o, sizeof wavelength);
+      const Index<V> covered = wavelength >= 0;
+      const auto at = [o](const double* numbers) { return load(numbers + o); };
+      const auto result =
+          scene_sample<obscured.value, V>(grid, at(from.x), at(from.y), at(from.z), at(from.u), at(from.v),
+                                          kernel::Table<V>::number(covered & 1) > V(0), Index<V>(wavelength & covered));
+      for (std::size_t k = 0; k < result.size(); ++k) store(to[k] + o, result[k]);
+    }
   };
   if (grid.obscured) {
     all(std::true_type());
@@ -32,6 +38,6 @@ void sample(const SceneGrid<dimensions>& grid, std::size_t count, const double* 
 
 }  // namespace
 
-const SceneLoops PETZVAL_LOOPS{sample<2>, sample<3>};
+const SceneLoops PETZVAL_LOOPS{{sample<1>, sample<2>}};
 
 }  // namespace petzval::pupil_table_detail

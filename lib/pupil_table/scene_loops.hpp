@@ -3,31 +3,25 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "core/widest.hpp"
 #include "scene_grid.hpp"
 
 namespace petzval::pupil_table_detail {
 
-/// Samples N scene points; pdf = 0 for points outside the grid.
-/// @param wavelength wavelength indices, -1 if not covered
-template <int dimensions>
-using SceneLoop = void (*)(const SceneGrid<dimensions>&, std::size_t, const double* x, const double* y, const double* z,
-                           const double* u, const double* v, const std::int32_t* wavelength,
-                           const EntranceRays&) noexcept;
+/// Scene points and their samples, padded to a multiple of 8. wavelength: indices, -1 if not covered.
+struct SceneSamples {
+  const double *x, *y, *z, *u, *v;
+  const std::int64_t* wavelength;
+};
+
+/// scene_sample() of N points, or of more up to a multiple of 8.
+template <int angles>
+using SceneLoop = void (*)(const SceneGrid<angles>&, std::size_t, const SceneSamples&, double* const (&to)[8]) noexcept;
 
 struct SceneLoops {
-  SceneLoop<2> of_revolution;
-  SceneLoop<3> with_cylinders;
-
-  template <int dimensions>
-  SceneLoop<dimensions> of() const noexcept {
-    if constexpr (dimensions == 2) {
-      return of_revolution;
-    } else {
-      return with_cylinders;
-    }
-  }
+  std::tuple<SceneLoop<1>, SceneLoop<2>> loops;  ///< by grid
 };
 PETZVAL_WIDEST(SceneLoops, scene_loops)
 

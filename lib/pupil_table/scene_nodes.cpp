@@ -15,7 +15,8 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 /// Direction from a centre to the point at which a ray leaves a sphere about the centre.
-Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept {
+Bearing<double> bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray,
+                                  double reciprocal_radius) noexcept {
   const Vec3<double> from = ray.origin - centre;
   const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
   const double along =
@@ -24,31 +25,32 @@ Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, do
   return bearing_of(unit.x, unit.y, unit.z);
 }
 
-Bearing towards(const Vec2<double>& angles) noexcept {
+Bearing<double> towards(const Vec2<double>& angles) noexcept {
   const double field = std::hypot(angles.x, angles.y);
   const Vec2<double> azimuth = field > 0 ? angles / field : Vec2<double>{0, 1};
-  return {field, std::sin(field), std::cos(field), azimuth.x, azimuth.y};
+  return {field, std::sin(field), std::cos(field), azimuth.y, azimuth.x};
 }
 
-PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept {
-  return PupilPlane::facing(centre, bearing.field, {bearing.azimuth_x, bearing.azimuth_y}, reciprocal_distance);
+PupilPlane plane_facing(const Vec3<double>& centre, const Bearing<double>& bearing,
+                        double reciprocal_distance) noexcept {
+  return PupilPlane::facing(centre, bearing.field, {bearing.sine, bearing.cosine}, reciprocal_distance);
 }
 
-/// A leaving ray as a ray of a scene point: the angles of SceneLayout, and the position in the plane that faces the
+/// A leaving ray as a ray of a scene point: the angles of SceneChart, and the position in the plane that faces the
 /// point, in the frame of the polygons.
 struct SeenRay {
   Vec2<double> angles, position;
 };
-template <int dimensions>
+template <int angles>
 std::vector<SeenRay> seen_from(const Vec3<double>& centre, double reciprocal, const std::vector<Ray<double>>& rays) {
   std::vector<SeenRay> seen;
   seen.reserve(rays.size());
   for (const Ray<double>& ray : rays) {
-    const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
+    const Bearing<double> bearing = bearing_on_sphere(centre, ray, reciprocal);
     const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
-    const Point<double> position = to_grid<dimensions>(bearing, {met.x, met.y});
-    seen.push_back(
-        {{angle_of<dimensions>(bearing, 0), angle_of<dimensions>(bearing, dimensions - 2)}, {position.x, position.y}});
+    const auto position = SceneChart<angles>::to_grid(bearing, Point<double>{met.x, met.y});
+    const auto own = SceneChart<angles>::angles_of(bearing);
+    seen.push_back({{own.front(), own.back()}, {position.x, position.y}});
   }
   return seen;
 }
@@ -113,20 +115,20 @@ double widest_field(const Vec3<double>& centre, const std::vector<Ray<double>>& 
   return widest;
 }
 
-template <int dimensions>
-SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
-                                   std::size_t wavelength, const ScenePassing& passing) {
-  using L = SceneLayout<dimensions>;
-  SceneNodes<dimensions> result;
+template <int angles>
+SceneNodes<angles> scene_nodes(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                               std::size_t wavelength, const ScenePassing& passing) {
+  using Chart = SceneChart<angles>;
+  SceneNodes<angles> result;
   std::vector<PupilPolygon>& polygons = result.polygons;
-  constexpr std::size_t distances = 2 * L::distances;
+  constexpr std::size_t distances = 2 * Chart::distances;
   std::vector<std::vector<SeenRay>> seen;  // at each distance of a node, and halfway
   for (std::size_t i = 0; i <= distances; ++i) {
-    seen.push_back(seen_from<dimensions>(centre, steepest * static_cast<double>(i) / distances, rays));
+    seen.push_back(seen_from<angles>(centre, steepest * static_cast<double>(i) / distances, rays));
   }
   // Last field at each distance, with a margin because the rays are samples.
   constexpr double field_margin = 1.05, axis_field_rad = 1e-6;
-  for (std::int32_t k = 0; k < L::angles; ++k) {
+  for (std::int32_t k = 0; k < Chart::angles; ++k) {
     std::array<double, distances + 1> widest{};
     for (std::size_t i = 0; i <= distances; ++i) {
       for (const SeenRay& ray : seen[i]) widest[i] = std::max(widest[i], ray.angles[k]);
@@ -136,22 +138,22 @@ SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, 
       const double lacking = std::max(widest[i] - (widest[i - 1] + widest[i + 1]) / 2, 0.0);
       widest[i - 1] += lacking, widest[i + 1] += lacking;
     }
-    for (std::int32_t i = 0; i <= L::distances; ++i) {
-      result.widest[static_cast<std::size_t>(i * L::angles + k)] = widest[static_cast<std::size_t>(2 * i)];
+    for (std::int32_t i = 0; i <= Chart::distances; ++i) {
+      result.widest[static_cast<std::size_t>(i * Chart::angles + k)] = widest[static_cast<std::size_t>(2 * i)];
     }
   }
 
-  constexpr auto& nodes = SceneNodes<dimensions>::lattice;
+  constexpr auto& nodes = SceneNodes<angles>::lattice;
   PupilChart chart{.nodes = nodes,
-                   .points = {{(dimensions == 2 ? 2 : 1) * L::distances, 2 * nodes.steps[1], 2 * nodes.steps[2]}},
-                   .quadrant = dimensions == 3};
+                   .points = {{(angles == 1 ? 2 : 1) * Chart::distances, 2 * nodes.steps[1], 2 * nodes.steps[2]}},
+                   .quadrant = angles == 2};
   chart.guesses = [&](PupilChart::Points points) {
     const double distance = points.front()[0];
     return guesses_from(seen[static_cast<std::size_t>(std::lround(distance * distances))], result.last(distance),
                         chart.points);
   };
   chart.clearances = [&](PupilChart::Points points) -> pupil_detail::PositionClearances {
-    std::vector<Bearing> bearings;
+    std::vector<Bearing<double>> bearings;
     std::vector<PupilPlane> planes;
     for (const ChartPoint& point : points) {
       bearings.push_back(towards(result.angles(point)));
@@ -164,7 +166,7 @@ SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, 
       for (auto& component : ray) component.resize(count);
       passes.resize(count);
       for (std::size_t r = 0; r < count; ++r) {
-        const Point<double> p = from_grid<dimensions>(bearings[which[r]], {x[r], y[r]});
+        const Point<double> p = Chart::to_film(bearings[which[r]], Point<double>{x[r], y[r]});
         const auto [origin, direction] = planes[which[r]].ray(p.x, p.y);
         for (int i : {0, 1, 2}) ray[i][r] = origin[i], ray[3 + i][r] = direction[i];
       }
@@ -190,7 +192,7 @@ SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, 
     for (const SeenRay& ray : seen[i]) {
       const ChartPoint point = result.point(distance, ray.angles);
       const PolygonWeights at = nodes.weights(point);
-      const bool outer = std::hypot(point[2], dimensions == 2 ? 0 : point[1]) > outer_field_fraction;
+      const bool outer = std::hypot(point[2], angles == 1 ? 0 : point[1]) > outer_field_fraction;
       const double relative = PolygonBetween{polygons, at}.relative_radius(ray.position);
       if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
@@ -210,9 +212,9 @@ SceneNodes<dimensions> scene_nodes(const Vec3<double>& centre, double steepest, 
   return result;
 }
 
-template SceneNodes<2> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
+template SceneNodes<1> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
                                    const ScenePassing&);
-template SceneNodes<3> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
+template SceneNodes<2> scene_nodes(const Vec3<double>&, double, const std::vector<Ray<double>>&, std::size_t,
                                    const ScenePassing&);
 
 }  // namespace petzval::pupil_table_detail
