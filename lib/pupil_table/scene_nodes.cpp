@@ -12,6 +12,13 @@
 #include "pupil/pupil_plane.hpp"
 
 namespace petzval::pupil_table_detail {
+
+/// A leaving ray as a ray of a scene point: the angles of SceneChart, and the position in the plane that faces the
+/// point, in the frame of the polygons.
+struct SeenRay {
+  Vec2<double> angles, position;
+};
+
 namespace {
 
 /// Direction from a centre to the point at which a ray leaves a sphere about the centre.
@@ -36,11 +43,6 @@ PupilPlane plane_facing(const Vec3<double>& centre, const Bearing<double>& beari
   return PupilPlane::facing(centre, bearing.field, {bearing.sine, bearing.cosine}, reciprocal_distance);
 }
 
-/// A leaving ray as a ray of a scene point: the angles of SceneChart, and the position in the plane that faces the
-/// point, in the frame of the polygons.
-struct SeenRay {
-  Vec2<double> angles, position;
-};
 template <int angles>
 std::vector<SeenRay> seen_from(const Vec3<double>& centre, double reciprocal, const std::vector<Ray<double>>& rays) {
   std::vector<SeenRay> seen;
