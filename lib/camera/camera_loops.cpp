@@ -5,11 +5,25 @@
 
 #include "camera_steps.hpp"
 #include "core/loop_math.hpp"
-#include "distance_to_front.hpp"
 #include "lens/look_up.hpp"
 
 namespace petzval::camera_detail {
 namespace {
+
+template <class T>
+inline TwoPlaneRayOf<T> line_at(const TwoPlaneRays<const T>& lines, std::size_t i) noexcept {
+  return {lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
+}
+template <class T>
+inline RayOf<T> ray_at(const RayArrays<T>& rays, std::size_t i) noexcept {
+  return {{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
+}
+template <class T>
+inline void put(const RayOf<T>& ray, const RayArrays<T>& rays, std::size_t i) noexcept {
+  const auto& [o, d] = ray;
+  rays.x[i] = o.x, rays.y[i] = o.y, rays.z[i] = o.z;
+  rays.dx[i] = d.x, rays.dy[i] = d.y, rays.dz[i] = d.z;
+}
 
 template <class T>
 void keep_on_film(const FilmBounds<T>& film, std::size_t count, const T* film_x, const T* film_y, T* kept_x,
@@ -26,32 +40,23 @@ template <class T>
 void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneRays<const T>& lines,
            const RayArrays<T>& rays) noexcept {
   const T z = static_cast<T>(space.pupil_z), depth = static_cast<T>(space.depth());
-  const T depth2 = depth * depth;
-  const auto [film_x, film_y, pupil_x, pupil_y] = lines;
-  const auto [ox, oy, oz, dx, dy, dz] = rays;
+  const TwoPlaneRays<const T> from = lines;
+  const RayArrays<T> to = rays;
   // The output arrays do not overlap the input.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T x = pupil_x[i] - film_x[i], y = pupil_y[i] - film_y[i];
-    const T per_length = towards / core_detail::square_root(x * x + y * y + depth2);
-    ox[i] = pupil_x[i];
-    oy[i] = pupil_y[i];
-    oz[i] = z;
-    dx[i] = x * per_length;
-    dy[i] = y * per_length;
-    dz[i] = depth * per_length;
+    put(leaving(line_at(from, i), z, depth, towards), to, i);
   }
 }
 
 template <class T>
-inline void move_to_front(T vertex_z, T curvature, std::size_t count, const RayArrays<T>& rays) noexcept {
-  const auto [ox, oy, oz, dx, dy, dz] = rays;
+void move_all_to_front(T vertex_z, T curvature, std::size_t count, const RayArrays<T>& given) noexcept {
+  const RayArrays<T> rays = given;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T distance = distance_to_front(curvature, ox[i], oy[i], oz[i] - vertex_z, dx[i], dy[i], dz[i]);
-    ox[i] += distance * dx[i];
-    oy[i] += distance * dy[i];
-    oz[i] += distance * dz[i];
+    RayOf<T> ray = ray_at(rays, i);
+    move_to_front(vertex_z, curvature, ray);
+    rays.x[i] = ray.origin.x, rays.y[i] = ray.origin.y, rays.z[i] = ray.origin.z;
   }
 }
 
@@ -103,10 +108,7 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
 
 void weigh_one(const Front* front, double depth, const TwoPlaneRay& line, double area, double scale,
                CameraRay& ray) noexcept {
-  if (front) {
-    auto& [o, d] = ray.ray;
-    move_to_front(front->vertex_z, front->curvature, 1, RayArrays<double>{&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
-  }
+  if (front) move_to_front(front->vertex_z, front->curvature, ray.ray);
   const PupilWeight<double> of(depth);
   const double length2 = of.length2(line.film_x, line.film_y, line.pupil_x, line.pupil_y);
   ray.weight = scale * of.weight(length2, area);
@@ -154,8 +156,8 @@ void to_upright(std::size_t count, const T* excess, const T* virtual_x, const T*
                 const T* pupil_y, T* film_x, T* film_y) noexcept {
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [x, y] = upright_of(excess[i], virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
-    film_x[i] = x, film_y[i] = y;
+    const TwoPlaneRayOf<T> line = upright_of(excess[i], virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+    film_x[i] = line.film_x, film_y[i] = line.film_y;
   }
 }
 
@@ -180,8 +182,8 @@ void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* exc
 }
 
 template <class T>
-constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T>, look_up<T>,
-                                 weigh<T>,        to_virtual<T>, to_upright<T>,    weigh_tilted<T>};
+constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_all_to_front<T>, look_up<T>,
+                                 weigh<T>,        to_virtual<T>, to_upright<T>,        weigh_tilted<T>};
 
 }  // namespace
 

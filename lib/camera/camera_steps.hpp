@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <type_traits>
+
 #include "core/film_bounds.hpp"
 #include "core/loop_math.hpp"
 #include "petzval/core/ray.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
-/// Steps of a camera sample before and after its ray is found, for loops and for single samples.
+/// Steps of a camera sample before and after its ray is found, over a scalar: numbers of loops, doubles of single
+/// samples, and dual numbers for derivatives. A ray R is a Ray or a RayOf.
 namespace petzval::camera_detail {
 
 using core_detail::FilmBounds;
@@ -24,6 +29,61 @@ template <class T>
 inline bool on_film(const FilmBounds<T>& film, T x, T y) noexcept {
   const T dx = x - film.centre_x, dy = y - film.centre_y;
   return (dx <= film.half_width) & (-dx <= film.half_width) & (dy <= film.half_height) & (-dy <= film.half_height);
+}
+
+/// The ray of a line, from the pupil plane on.
+/// @param depth, towards as TwoPlanes::depth() and towards_scene()
+template <class T, class V>
+inline RayOf<V> leaving(const TwoPlaneRayOf<V>& line, T pupil_z, T depth, T towards) noexcept {
+  const V x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y;
+  const V per_length = towards / core_detail::square_root(V(x * x + y * y + depth * depth));
+  return {{line.pupil_x, line.pupil_y, V(pupil_z)}, {x * per_length, y * per_length, depth * per_length}};
+}
+
+/// The ray of a line in the plane z, by first-order maps.
+/// @param maps SectionMaps or its numbers in another type
+template <class Maps, class T, class V>
+inline RayOf<V> mapped(const Maps& maps, T z, const TwoPlaneRayOf<V>& line) noexcept {
+  const auto& [mx, my] = maps;
+  const auto& [film_x, film_y, pupil_x, pupil_y] = line;
+  const V ux = mx.c * film_x + mx.d * pupil_x, uy = my.c * film_y + my.d * pupil_y;
+  const V down = T(-1) / core_detail::square_root(V(T(1) + ux * ux + uy * uy));
+  return {{mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, V(z)}, {ux * down, uy * down, down}};
+}
+
+/// Distance along a ray to the front. The ray travels towards the scene; coordinates are relative to the vertex of the
+/// front.
+///
+/// A sphere of curvature c is c |p|^2 = 2 p_z. With b = d_z - c p.d and e = c |p|^2 - 2 p_z, the ray leaves a convex
+/// sphere and meets a concave sphere at the distance
+///     s = (b + sqrt(b^2 - c e)) / c = e / (b - sqrt(b^2 - c e)).
+/// The second form also holds for planes. A ray that misses the sphere starts on the tangent plane at the vertex; a ray
+/// that leaves neither starts at its point nearest to the vertex.
+template <class T>
+inline T distance_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
+                           const T& dz) noexcept {
+  using std::sqrt;
+  const T along = x * dx + y * dy + z * dz;
+  const T e = curvature * (x * x + y * y + z * z) - T(2) * z;
+  const T b = dz - curvature * along;
+  const T square = b * b - curvature * e;
+  const bool outward = b < T(0);
+  const bool curved = curvature != T(0);
+  const bool reaches = square > T(0);
+  const bool meets = reaches & (outward | curved);
+  const T root = sqrt(meets ? square : T(1));
+  const T over = meets ? (outward ? e : T(b + root)) : T(-z);
+  const T under = meets ? (outward ? T(b - root) : curvature) : dz;
+  return (meets | (dz < T(0))) ? T(over / under) : T(-along);
+}
+
+/// Moves the origin of a ray along the ray to the front.
+template <class T, class R>
+inline void move_to_front(T vertex_z, T curvature, R& ray) noexcept {
+  auto& [o, d] = ray;
+  using V = std::remove_cvref_t<decltype(o.x)>;
+  const V distance = distance_to_front(V(curvature), o.x, o.y, V(o.z - vertex_z), d.x, d.y, d.z);
+  o.x += distance * d.x, o.y += distance * d.y, o.z += distance * d.z;
 }
 
 /// Weight of a pupil sample, and its density in solid angle at the film point.
@@ -74,12 +134,12 @@ inline V distance_excess(const Plane& plane, const V& virtual_x, const V& virtua
   return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (1 + plane.travel);
 }
 
-/// Intersection with the upright film of the ray of a virtual point through a position in the pupil.
+/// The ray of a virtual point through a position in the pupil, in terms of the upright film.
 /// @param excess distance_excess() of the virtual point
 template <class V>
-inline PlanePoint<V> upright_of(const V& excess, const V& virtual_x, const V& virtual_y, const V& pupil_x,
-                                const V& pupil_y) noexcept {
-  return {virtual_x - excess * pupil_x, virtual_y - excess * pupil_y};
+inline TwoPlaneRayOf<V> upright_of(const V& excess, const V& virtual_x, const V& virtual_y, const V& pupil_x,
+                                   const V& pupil_y) noexcept {
+  return {virtual_x - excess * pupil_x, virtual_y - excess * pupil_y, pupil_x, pupil_y};
 }
 
 /// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; zero or negative

@@ -8,8 +8,10 @@
 
 #include "camera_loops.hpp"
 #include "core/meet_plane.hpp"
+#include "dual_rays.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/lens_light.hpp"
+#include "trace/trace_differential.hpp"
 
 namespace petzval::camera_detail {
 namespace {
@@ -103,12 +105,12 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const double>
 template <class R>
 RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                                 const trace_detail::LensLight* light, double* transmittance) const noexcept {
-  const R film_x = static_cast<R>(line.film_x), film_y = static_cast<R>(line.film_y);
-  const R pupil_x = static_cast<R>(line.pupil_x), pupil_y = static_cast<R>(line.pupil_y);
-  const R depth = static_cast<R>(pupils().space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;
-  const R per_length = static_cast<R>(towards_) / std::sqrt(x * x + y * y + depth * depth);
-  const Ray<R> start{{pupil_x, pupil_y, static_cast<R>(pupils().space().pupil_z)},
-                     {x * per_length, y * per_length, depth * per_length}};
+  const auto number = [](double value) { return static_cast<R>(value); };
+  const TwoPlanes& space = pupils().space();
+  const auto [o, d] =
+      leaving(TwoPlaneRayOf<R>{number(line.film_x), number(line.film_y), number(line.pupil_x), number(line.pupil_y)},
+              number(space.pupil_z), number(space.depth()), number(towards_));
+  const Ray<R> start{{o.x, o.y, o.z}, {d.x, d.y, d.z}};
   const TraceOptions options{.travel = Travel::to_scene, .wavelength = wavelength};
   R left = 1;
   const auto end =
@@ -117,6 +119,19 @@ RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
   const Ray<R>& last = end.transmitted() ? end.ray : start;
   ray = {Vec3<double>(last.origin), Vec3<double>(last.direction)};
   return end.fate;
+}
+
+template <class R>
+RayOf<kernel::Dual> ExactModel<R>::to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                                            RayFate& fate) const noexcept {
+  const TwoPlanes& space = pupils().space();
+  const RayOf<kernel::Dual> ray = leaving(line, space.pupil_z, space.depth(), towards_);
+  // Traces the ray and its derivatives together.
+  Ray<R> by_u = ray_of<R>(ray, by_first), by_v = ray_of<R>(ray, by_second);
+  const auto end = trace_detail::trace_differential<R>(lens_, ray_of<R>(ray, value_only), by_u, by_v,
+                                                       {.travel = Travel::to_scene, .wavelength = wavelength});
+  fate = end.fate;
+  return end.transmitted() ? dual_ray(end.ray, by_u, by_v) : ray;
 }
 
 template <class R>

@@ -30,7 +30,8 @@ class ExactModel final : public RayModel {
                    const trace_detail::LensLight* light = nullptr,
                    double* transmittance = nullptr) const noexcept override;
   /// One ray with its derivatives, in double.
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept override;
+  RayOf<kernel::Dual> to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                               RayFate& fate) const noexcept override;
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight* light = nullptr,
                double* transmittances = nullptr) const noexcept override;

@@ -2,13 +2,10 @@
 #include "front.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "core/dual.hpp"
 #include "core/text.hpp"
-#include "distance_to_front.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "pupil/surface_box.hpp"
@@ -34,32 +31,6 @@ Front front_of(const Lens& lens) {
   if (first.curved_in != Section::both || !foremost || std::isnan(depth)) return {frontmost, 0, false};
   const bool spherical = first.conic == 0 && first.aspheric.empty();
   return {first.vertex_z, spherical ? first.curvature : 2 * depth / (half * half + depth * depth), spherical};
-}
-
-double distance_to_front(const Front& front, const Ray<double>& ray) noexcept {
-  const auto& [o, d] = ray;
-  return distance_to_front(front.curvature, o.x, o.y, o.z - front.vertex_z, d.x, d.y, d.z);
-}
-
-RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept {
-  using kernel::Dual;
-  const auto jet = [&](Vec3<double> Ray<double>::*component, int axis) {
-    Dual x((ray.ray.*component)[axis]);
-    x.v[0] = (ray.by_u.*component)[axis];
-    x.v[1] = (ray.by_v.*component)[axis];
-    return x;
-  };
-  const std::array o{jet(&Ray<double>::origin, 0), jet(&Ray<double>::origin, 1), jet(&Ray<double>::origin, 2)};
-  const std::array d{jet(&Ray<double>::direction, 0), jet(&Ray<double>::direction, 1), jet(&Ray<double>::direction, 2)};
-  const Dual distance = distance_to_front(Dual(front.curvature), o[0], o[1], o[2] - front.vertex_z, d[0], d[1], d[2]);
-  RayDerivatives result = ray;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Dual moved = o[axis] + distance * d[axis];
-    result.ray.origin[axis] = moved.a;
-    result.by_u.origin[axis] = moved.v[0];
-    result.by_v.origin[axis] = moved.v[1];
-  }
-  return result;
 }
 
 }  // namespace petzval::camera_detail

@@ -31,12 +31,10 @@
 #include "camera_data.hpp"
 #include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
-#include "distance_to_front.hpp"
 #include "make_model.hpp"
 #include "petzval/core/parallel.hpp"
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
-#include "tilted_pinhole.hpp"
 
 namespace petzval {
 namespace camera_detail {
@@ -129,6 +127,12 @@ constexpr double infinite_distance_mm = 1e12;
 /// The point of a ray's line nearest to the vertex; it keeps the precision of rays from distant origins.
 Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
   return ray.origin - ray.direction * glm::dot(ray.origin, ray.direction);
+}
+
+/// Proportional to chief_scale() of a film point, as a function of the position at which a pinhole's ray passes the
+/// pupil plane.
+double depth_ratio_at(const TiltedPlane& plane, const FilmPoint& position) noexcept {
+  return 1 + plane.travel - (plane.slope_x * position.x + plane.slope_y * position.y);
 }
 
 /// Area of the entrance pupil whose image is the pupil of a pinhole on the axis, mm^2. Film point and pupil position
@@ -442,8 +446,9 @@ ImportanceSample SceneSide::sample_distant(const RayModel& model, const Vec3<dou
 
 ImportanceSample SceneSide::connection(const Vec3<double>& position, const Vec3<double>& direction, double distance,
                                        double pdf) const noexcept {
-  return connected(position, direction, distance, std::min(distance_to_front(front_, {position, -direction}), distance),
-                   pdf);
+  const double to_front = distance_to_front(front_.curvature, position.x, position.y, position.z - front_.vertex_z,
+                                            -direction.x, -direction.y, -direction.z);
+  return connected(position, direction, distance, std::min(to_front, distance), pdf);
 }
 
 ImportanceSample SceneSide::through_pinhole(const RayModel& model, const Vec3<double>& point, double u, double v,

@@ -21,8 +21,6 @@
 #include <vector>
 
 #include "camera/moving_least_squares.hpp"
-#include "camera_steps.hpp"
-#include "core/dual.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "focus/root.hpp"
@@ -33,7 +31,6 @@
 #include "paraxial/ray_matrix.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/core/error.hpp"
-#include "tilted_pinhole.hpp"
 
 namespace petzval::camera_detail {
 namespace {
@@ -104,11 +101,7 @@ double zero_of(const auto& f, double scale) {
 }
 
 /// A dual number with the derivatives with respect to film x and y.
-Dual jet(double value, const Vec2<double>& by) noexcept {
-  Dual result(value);
-  result.v[0] = by.x, result.v[1] = by.y;
-  return result;
-}
+Dual jet(double value, const Vec2<double>& by) noexcept { return {value, {by.x, by.y}}; }
 
 }  // namespace
 
@@ -196,9 +189,8 @@ struct LocalFocus::Data {
     if (offsets) result.offset = offsets->at(film_point);
     return result;
   }
-  FilmPointFocus<Dual> point(const FilmPoint& film_point, double excess,
-                             const Vec2<double>& excess_by_film) const noexcept {
-    FilmPointFocus<Dual> result{jet(excess, excess_by_film), Dual(0.0), Dual(0.0), Dual(1.0)};
+  FilmPointFocus<Dual> point(const FilmPoint& film_point, const Dual& excess) const noexcept {
+    FilmPointFocus<Dual> result{excess, Dual(0.0), Dual(0.0), Dual(1.0)};
     if (surface) {
       const auto at_point = surface->slopes(film_point);
       result.surface = jet(at_point.values.inverse_distance, at_point.inverse_distance);
@@ -325,29 +317,16 @@ void LocalFocus::bend(const FilmPoint& film, double excess, Wavelength wavelengt
                                    {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
 }
 
-void LocalFocus::bend(const FilmPoint& film, double excess, const Vec2<double>& excess_by_film, Wavelength wavelength,
-                      RayDerivatives& ray) const noexcept {
+void LocalFocus::bend(const FilmPoint& film, const Dual& excess, Wavelength wavelength,
+                      RayOf<Dual>& ray) const noexcept {
   const Data& data = *data_;
   const auto at = data.at(wavelength);
   if (!at) return;
-  const auto component = [&](auto of) {
-    Dual result(of(ray.ray));
-    result.v[0] = of(ray.by_u), result.v[1] = of(ray.by_v);
-    return result;
-  };
-  BentRay<Dual> bent{component([](const Ray<double>& r) { return r.origin.x; }),
-                     component([](const Ray<double>& r) { return r.origin.y; }),
-                     component([](const Ray<double>& r) { return r.direction.x; }),
-                     component([](const Ray<double>& r) { return r.direction.y; }),
-                     component([](const Ray<double>& r) { return r.direction.z; })};
   const double z = data.first_order().z();
-  const auto point = data.point(film, excess, excess_by_film);
-  const Dual radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));
+  const auto point = data.point(film, excess);
+  const Dual radius = radius_of(at->maps, point, at_entrance(at->maps, z, ray));
   const Dual by_radius = beyond_one(data.rules.spline, radius) * data.rules.power;
-  bent = bent_ray(data.rules, at->maps, at->dispersion, z, point, by_radius, bent);
-  ray.ray = {{bent.x.a, bent.y.a, z}, {bent.dx.a, bent.dy.a, bent.dz.a}};
-  ray.by_u = {{bent.x.v[0], bent.y.v[0], 0}, {bent.dx.v[0], bent.dy.v[0], bent.dz.v[0]}};
-  ray.by_v = {{bent.x.v[1], bent.y.v[1], 0}, {bent.dx.v[1], bent.dy.v[1], bent.dz.v[1]}};
+  bend_ray(data.rules, at->maps, at->dispersion, z, point, by_radius, ray);
 }
 
 LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength wavelength,
@@ -374,8 +353,8 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const Vec2<double> chief = slope - height * t;
   const auto from = data.seen(*at, chief, plane);
   if (!from) return {};
-  const Vec2<double> excess_by_film = plane ? plane->distance_excess_at(from->film_point).by : Vec2<double>{0, 0};
-  const FilmPointFocus<Dual> point = data.point(from->film_point, from->excess, excess_by_film);
+  const Dual excess(from->excess, plane ? plane->distance_excess_at(from->film_point).v : kernel::Gradient());
+  const FilmPointFocus<Dual> point = data.point(from->film_point, excess);
   const auto focus = focus_of(data.rules, at->maps, at->dispersion, point);
   const double scale = point.scale.a;
   const Vec2<double> straight = height / scale;
@@ -402,9 +381,9 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
                                  data.film.shift_y_mm + up * data.film.height_mm};
       const TiltedPlane upright, &lies = plane ? *plane : upright;
       const FilmPoint from_pupil = lies.virtual_point(film_point);
-      const double excess = lies.distance_excess(from_pupil), scale = chief_scale(excess, at.middle);
+      const double scale = chief_scale(lies.distance_excess(from_pupil), at.middle);
       const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (scale * at.maps.chief_slope);
-      const FilmPointFocus<Dual> point = data.point(film_point, excess, lies.distance_excess_at(film_point).by);
+      const FilmPointFocus<Dual> point = data.point(film_point, lies.distance_excess_at(film_point));
       const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);
       const double rim = at.maps.radius * point.scale.a;
       const Vec2<double> x = data.moved(at, chief, {rim, 0}, plane), y = data.moved(at, chief, {0, rim}, plane);

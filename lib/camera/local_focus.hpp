@@ -48,9 +48,8 @@ class LocalFocus {
             const RayArrays<T>& rays) const noexcept;
   void bend(const FilmPoint& film, double excess, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// Bends a ray with its derivatives with respect to film x and y.
-  /// @param excess_by_film derivatives of `excess`
-  void bend(const FilmPoint& film, double excess, const Vec2<double>& excess_by_film, Wavelength wavelength,
-            RayDerivatives& ray) const noexcept;
+  void bend(const FilmPoint& film, const kernel::Dual& excess, Wavelength wavelength,
+            RayOf<kernel::Dual>& ray) const noexcept;
 
   /// The ray of the model that is bent to a given ray of the scene. The ray travels towards the lens.
   struct Straight {

@@ -17,7 +17,7 @@ void bend(const FocusRules<T>& given, const EntranceMaps<T>& given_maps, T dispe
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
       const FilmPointFocus<T> point{excess[i], surface[i], offset[i], scale[i]};
-      const auto ray = at_entrance(maps, z, BentRay<T>{ox[i], oy[i], dx[i], dy[i], dz[i]});
+      const auto ray = at_entrance(maps, z, RayOf<T>{{ox[i], oy[i], z}, {dx[i], dy[i], dz[i]}});
       radius[i] = within_knots(rules.spline, radius_of(maps, point, ray));
       by_radius[i] = beyond_one_at_first(rules.spline, radius[i]);
     }
@@ -31,10 +31,10 @@ void bend(const FocusRules<T>& given, const EntranceMaps<T>& given_maps, T dispe
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
     const FilmPointFocus<T> point{excess[i], surface[i], offset[i], scale[i]};
-    const auto bent =
-        bent_ray(rules, maps, dispersion, z, point, by_radius[i], BentRay<T>{ox[i], oy[i], dx[i], dy[i], dz[i]});
-    ox[i] = bent.x, oy[i] = bent.y, oz[i] = z;
-    dx[i] = bent.dx, dy[i] = bent.dy, dz[i] = bent.dz;
+    RayOf<T> ray{{ox[i], oy[i], z}, {dx[i], dy[i], dz[i]}};
+    bend_ray(rules, maps, dispersion, z, point, by_radius[i], ray);
+    ox[i] = ray.origin.x, oy[i] = ray.origin.y, oz[i] = ray.origin.z;
+    dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/loop_math.hpp"
+#include "camera_steps.hpp"
 #include "power_spline.hpp"
 
 /// Steps of LocalFocus for one ray, for loops, single rays and dual numbers.
@@ -41,12 +41,6 @@ struct FocusRules {
   PowerSpline<T> spline;
 };
 
-/// A ray given by its position in a plane across the axis.
-template <class N>
-struct BentRay {
-  N x, y, dx, dy, dz;
-};
-
 /// 1 / distance in focus at the centre of the pupil: `own` of the film, `asked` as requested.
 template <class N>
 struct InFocus {
@@ -82,11 +76,13 @@ template <class N>
 struct AtEntrance {
   N x, y, slope_x, slope_y;
 };
-template <class T, class N>
-inline AtEntrance<N> at_entrance(const EntranceMaps<T>& maps, T z, const BentRay<N>& ray) noexcept {
-  const N per_z = T(1) / ray.dz, slope_x = ray.dx * per_z, slope_y = ray.dy * per_z;
+template <class T, class R>
+inline auto at_entrance(const EntranceMaps<T>& maps, T z, const R& ray) noexcept {
+  const auto& [o, d] = ray;
+  using N = std::remove_cvref_t<decltype(o.x)>;
+  const N per_z = T(1) / d.z, slope_x = d.x * per_z, slope_y = d.y * per_z;
   const T away = maps.z - z;
-  return {ray.x + slope_x * away, ray.y + slope_y * away, slope_x, slope_y};
+  return AtEntrance<N>{o.x + slope_x * away, o.y + slope_y * away, slope_x, slope_y};
 }
 
 /// Height of a ray in the scaled pupil, divided by the radius of the pupil.
@@ -99,9 +95,9 @@ inline N radius_of(const EntranceMaps<T>& maps, const FilmPointFocus<N>& point, 
 /// Bends a ray.
 /// @param z plane in which the ray is given and returned
 /// @param by_radius power that the spline adds at the radius of the ray, 1/mm
-template <class T, class N>
-inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
-                           const FilmPointFocus<N>& point, N by_radius, const BentRay<N>& ray) noexcept {
+template <class T, class N, class R>
+inline void bend_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
+                     const FilmPointFocus<N>& point, N by_radius, R& ray) noexcept {
   const auto [own, asked] = focus_of(rules, maps, dispersion, point);
   const auto [x, y, slope_x, slope_y] = at_entrance(maps, z, ray);
   // u' = U + w' s H = u + (w' s - w) H.
@@ -109,7 +105,9 @@ inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& ma
   const N u = slope_x + turn * x, v = slope_y + turn * y;
   const N down = T(-1) / core_detail::square_root(N(u * u + v * v + T(1)));
   const T away = maps.z - z;
-  return {x * point.scale - u * away, y * point.scale - v * away, u * down, v * down, down};
+  auto& [o, d] = ray;
+  o.x = x * point.scale - u * away, o.y = y * point.scale - v * away, o.z = N(z);
+  d.x = u * down, d.y = v * down, d.z = down;
 }
 
 }  // namespace

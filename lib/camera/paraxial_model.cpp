@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "best_focus.hpp"
+#include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "core/widest.hpp"
@@ -278,6 +279,14 @@ RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
   if (position < to_scene_.size()) return one(&to_scene_[position], z_, reach_, line, ray);
   SectionMaps own;
   return one(map_at(wavelength, own), z_, reach_, line, ray);
+}
+
+RayOf<kernel::Dual> ParaxialModel::to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                                            RayFate& fate) const noexcept {
+  SectionMaps own;
+  const SectionMaps* const map = map_at(wavelength, own);
+  fate = map ? RayFate::transmitted : RayFate::missed_surface;
+  return mapped(map ? *map : own, z_, line);
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

@@ -82,7 +82,8 @@ class PETZVAL_API ParaxialModel final : public RayModel {
                 double* = nullptr) const noexcept override;
   RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                    const trace_detail::LensLight* = nullptr, double* = nullptr) const noexcept override;
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept override;
+  RayOf<kernel::Dual> to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                               RayFate& fate) const noexcept override;
   /// Inverse of to_scene(); for the pinhole, inverse of the thick lens. The fate is missed_surface also for rays that
   /// do not travel towards the lens.
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

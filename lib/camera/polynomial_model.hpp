@@ -30,8 +30,9 @@ class PolynomialModel final : public RayModel {
                    double*) const noexcept override {
     return polynomial_.to_scene(line, wavelength, ray);
   }
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept override {
-    return polynomial_.to_scene(line, wavelength);
+  RayOf<kernel::Dual> to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                               RayFate& fate) const noexcept override {
+    return polynomial_.to_scene(line, wavelength, fate);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight*,

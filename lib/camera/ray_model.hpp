@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/dual.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/config.hpp"
@@ -63,7 +64,8 @@ class PETZVAL_API RayModel {
                            const trace_detail::LensLight* light = nullptr,
                            double* transmittance = nullptr) const noexcept = 0;
   /// One ray with its derivatives.
-  virtual RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept = 0;
+  virtual RayOf<kernel::Dual> to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                                       RayFate& fate) const noexcept = 0;
   /// N rays of the scene, given anywhere on their lines, to image-space rays.
   virtual void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                        const TwoPlaneRays<double>& lines, RayFate* fates,

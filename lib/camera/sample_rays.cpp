@@ -5,15 +5,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "camera_loops.hpp"
 #include "core/instruction_set.hpp"
+#include "dual_rays.hpp"
 #include "paraxial_model.hpp"
-#include "tilted_pinhole.hpp"
 
 namespace petzval::camera_detail {
 namespace {
+
+using kernel::Dual;
 
 constexpr std::size_t block = 256;
 /// Number of lanes of the widest registers of any instruction set.
@@ -252,134 +255,141 @@ template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const Camera
 
 namespace {
 
-/// A sample of the film before its ray is known.
+/// A sample of the film before its ray is known, over a scalar: double, or a dual number with respect to film x and y.
+template <class V>
 struct Start {
   bool kept = false;  ///< true if the point is on the film; otherwise `film` is its centre
-  FilmPoint film, virtual_point;
-  TiltedPlane plane;  ///< of a tilted film
+  FilmPoint film;
   PupilWeights::IrisSample drawn{};
-  TwoPlaneRay line;                ///< for the weight
-  TwoPlaneRayDerivatives leaving;  ///< for the ray, with derivatives by film x and y; differs from `line` for a pinhole
   double area = 0;
+  TwoPlaneRay line;          ///< for the weight
+  TwoPlaneRayOf<V> leaving;  ///< for the ray; differs from `line` for a pinhole
+  V excess{};                ///< distance_excess() of a tilted film
+  TiltedPlane plane{};       ///< of a tilted film
 };
 
-/// @param with_derivatives true to set the derivatives of `leaving`
-Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
-            bool with_derivatives) noexcept {
-  Start s;
-  s.kept = on_film(view.bounds, film.x, film.y);
-  s.drawn = view.weights.draw(u, v);
+double value_of(double x) noexcept { return x; }
+double value_of(const Dual& x) noexcept { return x.a; }
+template <class V>
+TwoPlaneRay value_of(const TwoPlaneRayOf<V>& line) noexcept {
+  return {value_of(line.film_x), value_of(line.film_y), value_of(line.pupil_x), value_of(line.pupil_y)};
+}
+
+/// The position of a sample in the pupil of a film point.
+/// @param area receives the area of the sample
+PlanePoint<double> in_pupil(const FilmPupilTable& pupils, const PlanePoint<double>& film,
+                            const PupilWeights::IrisSample& drawn, Wavelength wavelength, double& area) noexcept {
+  const PupilSample at = pupils.sample({film.x, film.y}, drawn.u, drawn.v, wavelength);
+  area = at.area;
+  return {at.x, at.y};
+}
+PlanePoint<Dual> in_pupil(const FilmPupilTable& pupils, const PlanePoint<Dual>& film,
+                          const PupilWeights::IrisSample& drawn, Wavelength wavelength, double& area) noexcept {
+  FilmPupilTable::Derivatives by;
+  const PupilSample at = pupils.sample({film.x.a, film.y.a}, drawn.u, drawn.v, wavelength, by);
+  const auto& [by_x, by_y] = by;
+  area = at.area;
+  return {{at.x, by_x.x * film.x.v + by_y.x * film.y.v}, {at.y, by_x.y * film.x.v + by_y.y * film.y.v}};
+}
+
+template <class V>
+Start<V> start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
+               double time) noexcept {
+  const bool kept = on_film(view.bounds, film.x, film.y);
+  const auto drawn = view.weights.draw(u, v);
   // x and y are copied one at a time: a load of both numbers would stall if they were stored separately just before.
-  const double x = s.kept ? film.x : view.bounds.centre_x, y = s.kept ? film.y : view.bounds.centre_y;
-  s.film = {x, y};
+  const double x = kept ? film.x : view.bounds.centre_x, y = kept ? film.y : view.bounds.centre_y;
+  PlanePoint<V> point{V(x), V(y)};
+  if constexpr (std::is_same_v<V, Dual>) point = {Dual(x, 0), Dual(y, 1)};
+  double area = 0;
   if (!view.tilted) {
-    if (with_derivatives) {
-      FilmPupilTable::Derivatives by;
-      const PupilSample at = view.pupils.sample({x, y}, s.drawn.u, s.drawn.v, wavelength, by);
-      s.leaving = {
-          {x, y, at.x, at.y}, {1, 0, by.by_film_x[0], by.by_film_x[1]}, {0, 1, by.by_film_y[0], by.by_film_y[1]}};
-      s.area = at.area;
-    } else {
-      const PupilSample at = view.pupils.sample({x, y}, s.drawn.u, s.drawn.v, wavelength);
-      s.leaving.line = {x, y, at.x, at.y};
-      s.area = at.area;
-    }
-    s.line = s.leaving.line;
-    return s;
+    const PlanePoint<V> at = in_pupil(view.pupils, point, drawn, wavelength, area);
+    const TwoPlaneRayOf<V> line{point.x, point.y, at.x, at.y};
+    return {kept, {x, y}, drawn, area, value_of(line), line};
   }
-  s.plane = view.tilted->plane(time);
-  s.virtual_point = s.plane.virtual_point({x, y});
-  if (with_derivatives) {
-    s.leaving = view.tilted->line({x, y}, s.drawn.u, s.drawn.v, wavelength, time, s.area);
-  } else {
-    const PupilSample at = view.tilted->pupils().sample(s.virtual_point, s.drawn.u, s.drawn.v, wavelength);
-    s.leaving.line = s.plane.upright(s.virtual_point, {at.x, at.y});
-    s.area = at.area;
+  const TiltedPlane plane = view.tilted->plane(time);
+  point = virtual_of(plane, point.x, point.y);
+  const V excess = distance_excess(plane, point.x, point.y);
+  const PlanePoint<V> at = in_pupil(view.tilted->pupils(), point, drawn, wavelength, area);
+  TwoPlaneRayOf<V> leaving = upright_of(excess, point.x, point.y, at.x, at.y);
+  const TwoPlaneRay line = value_of(leaving);
+  if (view.model.pinhole()) {
+    const V scale = chief_scale(excess, view.wavelengths.pinhole_shift(wavelength));
+    leaving.film_x = point.x * scale, leaving.film_y = point.y * scale;
   }
-  s.line = s.leaving.line;
-  if (!view.model.pinhole()) return s;
-  const double shift = view.wavelengths.pinhole_shift(wavelength);
-  if (with_derivatives) {
-    s.leaving = pinhole_line(s.plane, {x, y}, shift);
-  } else {
-    const double scale = chief_scale(s.plane.distance_excess(s.virtual_point), shift);
-    s.leaving.line.film_x = s.virtual_point.x * scale, s.leaving.line.film_y = s.virtual_point.y * scale;
-  }
-  return s;
+  return {kept, {x, y}, drawn, area, line, leaving, excess, plane};
 }
 
 /// Sets weight, densities and fate of a sample.
 /// @param front moves the ray to this front; null if the ray starts at the front
 /// @param transmittance of an exact ray
-void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, double transmittance,
+template <class V>
+void weigh(const FilmView& view, const Start<V>& s, Wavelength wavelength, const Front* front, double transmittance,
            CameraRay& out) noexcept {
+  const TwoPlaneRay& line = s.line;
   const bool decides = view.tilted && decide(view.pupils, view.model);
-  if (decides && !view.pupils.contains({s.line.film_x, s.line.film_y}, s.line.pupil_x, s.line.pupil_y, wavelength)) {
+  if (decides && !view.pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength)) {
     out.fate = RayFate::vignetted;
   }
   const double scale = view.wavelengths.scale(wavelength);
   out.fate = fate_of(out.fate, s.kept, scale > 0, s.area > 0);
-  camera_loops().weigh_one(front, view.depth, s.line, s.area, scale, out);
+  camera_loops().weigh_one(front, view.depth, line, s.area, scale, out);
   if (!(s.kept && s.area > 0)) out.pdf_pupil = out.pdf_direction = 0;
   if (view.weights) {
     const bool of_line = view.tilted && !view.model.pinhole();
     const double weight = out.fate != RayFate::transmitted ? 0
-                          : of_line                        ? view.weights.of_line(s.line, wavelength)
-                                    : view.weights.of_sample(s.drawn.u, s.drawn.v, s.line, wavelength);
+                          : of_line                        ? view.weights.of_line(line, wavelength)
+                                    : view.weights.of_sample(s.drawn.u, s.drawn.v, line, wavelength);
     out.weight *= weight / s.drawn.density;
     out.pdf_pupil *= s.drawn.density, out.pdf_direction *= s.drawn.density;
     if (!(weight > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
   }
   if (view.transmission && out.fate == RayFate::transmitted) {
-    const auto& [x, y, u, v] = s.line;
+    const auto& [x, y, u, v] = line;
     view.transmission.fill<double>(1, {&x, &y, &u, &v}, {.all = wavelength}, &transmittance);
     out.weight *= transmittance;
     if (!(out.weight > 0)) out.fate = RayFate::vignetted;
   }
+  if (view.tilted) {
+    const double near = 1 + value_of(s.excess);
+    const double facing = facing_of(s.plane, value_of(s.excess), line.pupil_x, line.pupil_y);
+    out.weight *= facing;
+    out.pdf_direction /= near * near;
+    if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
+  }
   if (out.fate != RayFate::transmitted) out.weight = 0;
-  if (!view.tilted) return;
-  const double near = 1 + s.plane.distance_excess(s.virtual_point);
-  const double facing = s.plane.weight(s.virtual_point, {s.line.pupil_x, s.line.pupil_y});
-  out.weight *= facing;
-  out.pdf_direction /= near * near;
-  if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
 }
 
 }  // namespace
 
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept {
-  const Start s = start(view, film, u, v, wavelength, time, false);
+  const auto s = start<double>(view, film, u, v, wavelength, time);
   CameraRay out;
   double transmittance = 1;
-  out.fate = view.model.to_scene(s.leaving.line, wavelength, out.ray, view.transmission.light(), &transmittance);
-  if (view.focus) {
-    view.focus.bend(s.film, view.tilted ? s.plane.distance_excess(s.virtual_point) : 0, wavelength, out.ray);
-  }
+  out.fate = view.model.to_scene(s.leaving, wavelength, out.ray, view.transmission.light(), &transmittance);
+  if (view.focus) view.focus.bend(s.film, s.excess, wavelength, out.ray);
   weigh(view, s, wavelength, view.moves_rays() ? &view.front : nullptr, transmittance, out);
   return out;
 }
 
 CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint& film, double u, double v,
                                           Wavelength wavelength, double time) noexcept {
-  const Start s = start(view, film, u, v, wavelength, time, true);
-  RayDerivatives ray = view.model.to_scene(s.leaving, wavelength);
-  if (view.focus) {
-    const auto excess = view.tilted ? s.plane.distance_excess_at(s.film) : TiltedPlane::DistanceExcess{};
-    view.focus.bend(s.film, excess.value, excess.by, wavelength, ray);
-  }
-  if (view.moves_rays()) ray = at_front(view.front, ray);
+  const auto s = start<Dual>(view, film, u, v, wavelength, time);
   CameraRayDifferential result;
-  result.sample.ray = ray.ray, result.sample.fate = ray.fate;
+  RayOf<Dual> ray = view.model.to_scene(s.leaving, wavelength, result.sample.fate);
+  if (view.focus) view.focus.bend(s.film, s.excess, wavelength, ray);
+  if (view.moves_rays()) move_to_front(view.front.vertex_z, view.front.curvature, ray);
+  result.sample.ray = ray_of(ray, value_only);
   double transmittance = 1;
   if (view.transmission) {  // derivatives do not change the light
     Ray<double> same;
-    view.model.to_scene(s.leaving.line, wavelength, same, view.transmission.light(), &transmittance);
+    view.model.to_scene(value_of(s.leaving), wavelength, same, view.transmission.light(), &transmittance);
   }
   weigh(view, s, wavelength, nullptr, transmittance, result.sample);
   if (!result.sample) return result;
-  result.by_film_x = ray.by_u;
-  result.by_film_y = ray.by_v;
+  result.by_film_x = ray_of(ray, by_first);
+  result.by_film_y = ray_of(ray, by_second);
   return result;
 }
 

@@ -19,12 +19,10 @@
 #include "camera_steps.hpp"
 #include "check_film.hpp"
 #include "core/check_rectangle.hpp"
-#include "core/dual.hpp"
 #include "core/text.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
 #include "pupil/surface_box.hpp"
-#include "tilted_pinhole.hpp"
 
 namespace petzval {
 namespace camera_detail {
@@ -41,26 +39,6 @@ TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
           .slope_x = normal.x / (normal.z * distance),
           .slope_y = normal.y / (normal.z * distance),
           .cosine = normal.z};
-}
-
-using kernel::Dual;
-
-/// A virtual point with derivatives with respect to its film point.
-struct VirtualPoint {
-  Dual x, y, excess;
-
-  FilmPoint point() const noexcept { return {x.a, y.a}; }
-};
-
-VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
-  const auto [x, y] = virtual_of(plane, Dual(film.x, 0), Dual(film.y, 1));
-  return {x, y, distance_excess(plane, x, y)};
-}
-
-TwoPlaneRayDerivatives derivatives_of(const Dual& film_x, const Dual& film_y, const Dual& pupil_x,
-                                      const Dual& pupil_y) noexcept {
-  const auto component = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
-  return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, component(0), component(1)};
 }
 
 /// @throws Error  if a corner of the film is close to the pupil plane
@@ -192,14 +170,13 @@ double TiltedPlane::distance_excess(const FilmPoint& point) const noexcept {
   return camera_detail::distance_excess(*this, point.x, point.y);
 }
 
-TiltedPlane::DistanceExcess TiltedPlane::distance_excess_at(const FilmPoint& film) const noexcept {
-  const Dual excess = differentiated(*this, film).excess;
-  return {excess.a, {excess.v[0], excess.v[1]}};
+kernel::Dual TiltedPlane::distance_excess_at(const FilmPoint& film) const noexcept {
+  const auto [x, y] = virtual_of(*this, kernel::Dual(film.x, 0), kernel::Dual(film.y, 1));
+  return camera_detail::distance_excess(*this, x, y);
 }
 
 TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& position) const noexcept {
-  const auto [x, y] = upright_of(distance_excess(point), point.x, point.y, position.x, position.y);
-  return {x, y, position.x, position.y};
+  return upright_of(distance_excess(point), point.x, point.y, position.x, position.y);
 }
 
 std::optional<FilmPoint> TiltedPlane::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
@@ -217,25 +194,6 @@ TiltedPlane TiltedFilm::plane(double time) const noexcept {
   TiltedPlane result = first_;
   if (time > 0) result.travel = travel_ * std::min(time, 1.0);
   return result;
-}
-
-TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
-                                        double& area) const noexcept {
-  const VirtualPoint from = differentiated(plane(time), film);
-  FilmPupilTable::Derivatives by;
-  const PupilSample at = pupils_.sample(from.point(), u, v, wavelength, by);
-  const auto& [by_x, by_y] = by;
-  area = at.area;
-  Dual pupil_x(at.x), pupil_y(at.y);
-  pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
-  pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;
-  return derivatives_of(from.x - from.excess * pupil_x, from.y - from.excess * pupil_y, pupil_x, pupil_y);
-}
-
-TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& film, double shift) noexcept {
-  const VirtualPoint from = differentiated(plane, film);
-  const Dual x = from.x / (1.0 + from.excess * shift), y = from.y / (1.0 + from.excess * shift);
-  return derivatives_of(x, y, shift * x, shift * y);
 }
 
 }  // namespace camera_detail

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/dual.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/config.hpp"
@@ -25,11 +26,7 @@ struct PETZVAL_API TiltedPlane {
   /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
   double distance_excess(const FilmPoint& virtual_point) const noexcept;
   /// distance_excess() of a film point, with its derivatives with respect to film x and y.
-  struct DistanceExcess {
-    double value = 0;
-    Vec2<double> by{0, 0};
-  };
-  DistanceExcess distance_excess_at(const FilmPoint& film) const noexcept;
+  kernel::Dual distance_excess_at(const FilmPoint& film) const noexcept;
   /// Image-space ray from the film point of a virtual point through a position in the pupil plane.
   TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& position) const noexcept;
   /// Virtual point of the film point that a ray meets; nullopt if the ray meets the back of the film or is parallel to
@@ -70,10 +67,6 @@ class PETZVAL_API TiltedFilm {
 
   /// The film at a fraction (0 to 1, clamped) of the time that the shutter is open.
   TiltedPlane plane(double time) const noexcept;
-  /// Image-space ray of a film sample, with derivatives with respect to film x and y.
-  /// @param area receives the area of the sample
-  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
-                              double& area) const noexcept;
 
  private:
   Film film_;

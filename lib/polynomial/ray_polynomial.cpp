@@ -135,21 +135,14 @@ RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
   return polynomial_detail::polynomial_loops().one[data_->loop()](coefficients, scales, line, ray);
 }
 
-RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
+RayOf<Dual> RayPolynomial::to_scene(const TwoPlaneRayOf<Dual>& line, Wavelength wavelength,
+                                    RayFate& fate) const noexcept {
   polynomial_detail::WavelengthFits::Buffer<double> between;
   const auto [coefficients, scales] = data_->by_wavelength.fitted<double>(wavelength, between);
-  const auto jet = [&](double TwoPlaneRay::*component) {
-    return Dual(line.line.*component, {line.by_u.*component, line.by_v.*component});
-  };
-  const auto [inside, ray] = dual_maps[data_->loop()](
-      scales,
-      {jet(&TwoPlaneRay::film_x), jet(&TwoPlaneRay::film_y), jet(&TwoPlaneRay::pupil_x), jet(&TwoPlaneRay::pupil_y)},
-      coefficients);
-  const auto of_ray = [&rays = ray](const auto& number) -> Ray<double> {
-    return {{number(rays[0]), number(rays[1]), number(rays[2])}, {number(rays[3]), number(rays[4]), number(rays[5])}};
-  };
-  return {inside ? RayFate::transmitted : RayFate::outside_fit, of_ray([](const Dual& x) { return x.a; }),
-          of_ray([](const Dual& x) { return x.v.x; }), of_ray([](const Dual& x) { return x.v.y; })};
+  const auto& [film_x, film_y, pupil_x, pupil_y] = line;
+  const auto [inside, to] = dual_maps[data_->loop()](scales, {film_x, film_y, pupil_x, pupil_y}, coefficients);
+  fate = inside ? RayFate::transmitted : RayFate::outside_fit;
+  return {{to[0], to[1], to[2]}, {to[3], to[4], to[5]}};
 }
 
 void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

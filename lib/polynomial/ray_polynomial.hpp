@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/dual.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
@@ -107,7 +108,8 @@ class PETZVAL_API RayPolynomial {
   /// Maps one image-space ray; equal to the batch up to rounding.
   RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// Maps one image-space ray with its derivatives, in double.
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength = {}) const noexcept;
+  RayOf<kernel::Dual> to_scene(const TwoPlaneRayOf<kernel::Dual>& line, Wavelength wavelength,
+                               RayFate& fate) const noexcept;
   /// Inverts to_scene() by Newton's iteration: maps N scene rays, given anywhere on their lines, to image-space rays.
   ///
   /// If no ray in the domain is found, the fate is outside_fit and the result is the axis.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "core/kernel_vec.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
@@ -44,20 +45,17 @@ struct TwoPlaneRays {
   }
 };
 
-/// An image-space ray: its points on the film and on the pupil plane (mm).
-struct TwoPlaneRay {
-  double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
+/// An image-space ray over a scalar: its points on the film and on the pupil plane (mm).
+template <class V>
+struct TwoPlaneRayOf {
+  V film_x{}, film_y{}, pupil_x{}, pupil_y{};
 };
+using TwoPlaneRay = TwoPlaneRayOf<double>;
 
-/// An image-space ray and its derivatives by two parameters.
-struct TwoPlaneRayDerivatives {
-  TwoPlaneRay line{}, by_u{}, by_v{};
-};
-
-/// A ray and the derivatives of its origin and direction by two parameters; 0 if the ray is lost.
-struct RayDerivatives {
-  RayFate fate = RayFate::transmitted;
-  Ray<double> ray{}, by_u{{0, 0, 0}, {0, 0, 0}}, by_v{{0, 0, 0}, {0, 0, 0}};
+/// A ray over any scalar, with the members of Ray.
+template <class V>
+struct RayOf {
+  kernel::Vec<V> origin, direction;
 };
 
 }  // namespace petzval

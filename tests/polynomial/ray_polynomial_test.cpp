@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../expect_error.hpp"
+#include "camera/dual_rays.hpp"
 #include "lines.hpp"
 
 namespace petzval {
@@ -224,6 +225,11 @@ TEST(RayPolynomial, DerivativesEqualFiniteDifferences) {
     const RayPolynomial polynomial(degree, domain(n < 0),
                                    {numbers(degree, -0.9, n < 0 ? 0.005 : 0.02, 587.5618, n < 0)});
     const TwoPlaneRay by_u{1, -2, 0.5, 0.25}, by_v{0.5, 1, -2, 1};
+    const auto duals = [](const TwoPlaneRay& at, const TwoPlaneRay& u, const TwoPlaneRay& v) {
+      const auto dual = [&](double TwoPlaneRay::*of) { return kernel::Dual(at.*of, {u.*of, v.*of}); };
+      return TwoPlaneRayOf<kernel::Dual>{dual(&TwoPlaneRay::film_x), dual(&TwoPlaneRay::film_y),
+                                         dual(&TwoPlaneRay::pupil_x), dual(&TwoPlaneRay::pupil_y)};
+    };
     const auto moved = [](const TwoPlaneRay& line, const TwoPlaneRay& by, double step) {
       return TwoPlaneRay{0.9 * line.film_x + step * by.film_x, 0.9 * line.film_y + step * by.film_y,
                          0.9 * line.pupil_x + step * by.pupil_x, 0.9 * line.pupil_y + step * by.pupil_y};
@@ -238,18 +244,26 @@ TEST(RayPolynomial, DerivativesEqualFiniteDifferences) {
         near.add(l.film_x, l.film_y, l.pupil_x, l.pupil_y);
       }
       near.through(polynomial);
-      const RayDerivatives found = polynomial.to_scene({moved(at, by_u, 0), by_u, by_v}, 0);
-      ASSERT_EQ(found.fate, RayFate::transmitted);
-      EXPECT_LT(glm::distance(found.ray.origin, near.origin(0)), 1e-13);
-      EXPECT_LT(glm::distance(found.ray.direction, near.direction(0)), 1e-15);
+      RayFate fate = RayFate::outside_fit;
+      const auto found = polynomial.to_scene(duals(moved(at, by_u, 0), by_u, by_v), 0, fate);
+      ASSERT_EQ(fate, RayFate::transmitted);
+      const Ray<double> ray = camera_detail::ray_of(found, camera_detail::value_only);
+      EXPECT_LT(glm::distance(ray.origin, near.origin(0)), 1e-13);
+      EXPECT_LT(glm::distance(ray.direction, near.direction(0)), 1e-15);
       for (const std::size_t k : {1u, 3u}) {
-        const Ray<double>& by = k == 1 ? found.by_u : found.by_v;
+        const Ray<double> by = k == 1 ? camera_detail::ray_of(found, camera_detail::by_first)
+                                      : camera_detail::ray_of(found, camera_detail::by_second);
         EXPECT_LT(glm::distance(by.origin, (near.origin(k) - near.origin(k + 1)) / (2 * step)), 1e-7);
         EXPECT_LT(glm::distance(by.direction, (near.direction(k) - near.direction(k + 1)) / (2 * step)), 1e-7);
       }
     }
-    EXPECT_EQ(polynomial.to_scene({{20.1, 0, 0, 0}, by_u, by_v}, 0).fate, RayFate::outside_fit);
-    EXPECT_EQ(polynomial.to_scene({{0, 0, 0, 0}, by_u, by_v}, 1).fate, RayFate::outside_fit);
+    const auto fate_of = [&](const TwoPlaneRay& line, std::size_t wavelength) {
+      RayFate fate = RayFate::transmitted;
+      polynomial.to_scene(duals(line, by_u, by_v), wavelength, fate);
+      return fate;
+    };
+    EXPECT_EQ(fate_of({20.1, 0, 0, 0}, 0), RayFate::outside_fit);
+    EXPECT_EQ(fate_of({0, 0, 0, 0}, 1), RayFate::outside_fit);
   }
 }
 
