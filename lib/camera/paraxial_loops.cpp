@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "camera_steps.hpp"
 #include "lens/look_up.hpp"
 
 namespace petzval::camera_detail {
@@ -17,29 +18,20 @@ inline bool in_reach(T reach, T fx, T fy, T px, T py) noexcept {
 
 /// SectionMaps in numbers of type T.
 template <class T>
+struct Map {
+  T a, b, c, d;
+};
+template <class T>
 struct Maps {
-  T xa, xb, xc, xd, ya, yb, yc, yd;
+  Map<T> x, y;
 };
 
 template <class T>
 inline Maps<T> maps_in(const SectionMaps& maps) noexcept {
-  const auto number = [](double value) { return static_cast<T>(value); };
-  const auto& [mx, my] = maps;
-  return {number(mx.a), number(mx.b), number(mx.c), number(mx.d),
-          number(my.a), number(my.b), number(my.c), number(my.d)};
-}
-
-/// A ray of the scene, in the plane of the maps.
-template <class T>
-struct Mapped {
-  T x, y, dx, dy, dz;
-};
-
-template <class T>
-inline Mapped<T> mapped(const Maps<T>& maps, T film_x, T film_y, T pupil_x, T pupil_y) noexcept {
-  const T ux = maps.xc * film_x + maps.xd * pupil_x, uy = maps.yc * film_y + maps.yd * pupil_y;
-  const T down = T(-1) / std::sqrt(T(1) + ux * ux + uy * uy);
-  return {maps.xa * film_x + maps.xb * pupil_x, maps.ya * film_y + maps.yb * pupil_y, ux * down, uy * down, down};
+  const auto map = [](const RayMatrix& of) -> Map<T> {
+    return {static_cast<T>(of.a), static_cast<T>(of.b), static_cast<T>(of.c), static_cast<T>(of.d)};
+  };
+  return {map(maps.x), map(maps.y)};
 }
 
 // With __restrict compilers vectorize these loops; they honour it on parameters only.
@@ -54,17 +46,13 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __res
     // An invalid line is replaced by the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
-    const Mapped<T> ray = mapped(maps, fx, fy, px, py);
-    x[i] = ray.x;
-    y[i] = ray.y;
-    out_z[i] = z;
-    dx[i] = ray.dx;
-    dy[i] = ray.dy;
-    dz[i] = ray.dz;
+    const auto [o, d] = mapped(maps, z, TwoPlaneRayOf<T>{fx, fy, px, py});
+    x[i] = o.x, y[i] = o.y, out_z[i] = o.z;
+    dx[i] = d.x, dy[i] = d.y, dz[i] = d.z;
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
-    const bool known = (maps.xa != T(0)) | (maps.xc != T(0));  // a map of a lens is never zero
+    const bool known = (maps.x.a != T(0)) | (maps.x.c != T(0));  // a map of a lens is never zero
     const bool good = known & in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
   }
@@ -88,12 +76,12 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
     if (job.equal_sections) {
       lens_detail::look_up(job.maps, job.wavelengths, begin, n, m, 4);
       run(begin, n, [&m](std::size_t i) -> Maps<T> {
-        return {m[0][i], m[1][i], m[2][i], m[3][i], m[0][i], m[1][i], m[2][i], m[3][i]};
+        return {{m[0][i], m[1][i], m[2][i], m[3][i]}, {m[0][i], m[1][i], m[2][i], m[3][i]}};
       });
     } else {
       lens_detail::look_up(job.maps, job.wavelengths, begin, n, m);
       run(begin, n, [&m](std::size_t i) -> Maps<T> {
-        return {m[0][i], m[1][i], m[2][i], m[3][i], m[4][i], m[5][i], m[6][i], m[7][i]};
+        return {{m[0][i], m[1][i], m[2][i], m[3][i]}, {m[4][i], m[5][i], m[6][i], m[7][i]}};
       });
     }
   }
@@ -104,8 +92,9 @@ RayFate one_to_scene(const SectionMaps* maps, double z, double reach, const TwoP
   auto& [o, d] = ray;
   o.x = 0, o.y = 0, o.z = z, d.x = 0, d.y = 0, d.z = -1;
   if (!maps || !in_reach(reach, line.film_x, line.film_y, line.pupil_x, line.pupil_y)) return RayFate::missed_surface;
-  const auto found = mapped(maps_in<double>(*maps), line.film_x, line.film_y, line.pupil_x, line.pupil_y);
-  o.x = found.x, o.y = found.y, d.x = found.dx, d.y = found.dy, d.z = found.dz;
+  const RayOf<double> found = mapped(*maps, z, line);
+  o.x = found.origin.x, o.y = found.origin.y;
+  d.x = found.direction.x, d.y = found.direction.y, d.z = found.direction.z;
   return RayFate::transmitted;
 }
 
