@@ -8,6 +8,8 @@
 #include "core/widest.hpp"
 #include "front.hpp"
 #include "lens/wavelength_rows.hpp"
+#include "local_focus_steps.hpp"
+#include "paraxial_model.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "pupil_table/two_plane_rays.hpp"
 
@@ -20,6 +22,28 @@ struct TiltedBounds {
   T whole_travel;            ///< travel during the complete exposure
   const T* times = nullptr;  ///< one for each sample
 };
+
+/// Maps film lines to rays in the plane z, for first-order models.
+template <class T>
+struct ParaxialJob {
+  lens_detail::WavelengthRows<T> maps;  ///< the numbers of two SectionMaps
+  bool equal_sections = false;          ///< true if both sections are equal
+  const SectionMaps* shared = nullptr;  ///< at the common wavelength; null if it is not covered
+  T z = 0;
+  T reach = 0;  ///< largest sum of absolute coordinates of a line
+  RayWavelengths wavelengths;
+};
+
+/// FilmPointFocus of N film points.
+template <class T>
+struct FilmPointFocuses {
+  const T* excess;
+  const T* surface;
+  const T* offset;
+  const T* scale;
+};
+
+constexpr std::size_t bend_block = 256;
 
 /// Loops over samples, for float or double.
 template <class T>
@@ -44,6 +68,11 @@ struct CameraLoopsOf {
                      const T* pupil_y, T* film_x, T* film_y) noexcept;
   void (*weigh_tilted)(const TiltedBounds<T>&, std::size_t, const T* excess, const T* pupil_x, const T* pupil_y,
                        RayFate*, const CameraRays<T>&) noexcept;
+  void (*map)(std::size_t, const ParaxialJob<T>&, const TwoPlaneRays<const T>&, const RayArrays<T>&, RayFate*) noexcept;
+  /// Bends up to bend_block rays of one wavelength, in place.
+  /// @param z plane in which the rays are given
+  void (*bend)(const FocusRules<T>&, const EntranceMaps<T>&, T dispersion, T z, std::size_t, const FilmPointFocuses<T>&,
+               const RayArrays<T>&) noexcept;
 };
 struct CameraLoops {
   CameraLoopsOf<float> single;
@@ -51,6 +80,10 @@ struct CameraLoops {
   /// Moves the ray of one sample to the front (if not null) and sets its weight and densities, for every fate.
   void (*weigh_one)(const Front* front, double depth, const TwoPlaneRay&, double area, double scale,
                     CameraRay&) noexcept;
+  /// Maps one line.
+  /// @param maps null like ParaxialJob::shared
+  RayFate (*map_one)(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line,
+                     Ray<double>& ray) noexcept;
 
   template <class T>
   const CameraLoopsOf<T>& of() const noexcept {

@@ -21,12 +21,12 @@
 #include <vector>
 
 #include "camera/moving_least_squares.hpp"
+#include "camera_loops.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "focus/root.hpp"
 #include "focus/targets.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "local_focus_loops.hpp"
 #include "make_model.hpp"
 #include "paraxial/ray_matrix.hpp"
 #include "paraxial_model.hpp"
@@ -266,7 +266,7 @@ template <class T>
 void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const T* excess,
                       const RayWavelengths& wavelengths, const RayArrays<T>& rays) const noexcept {
   const Data& data = *data_;
-  const auto& loop = local_focus_loops().of<T>();
+  const auto loop = camera_loops().of<T>().bend;
   const FocusRules<T>* rules = nullptr;
   if constexpr (std::is_same_v<T, float>) {
     rules = &data.rules_in_float;
@@ -312,9 +312,9 @@ void LocalFocus::bend(const FilmPoint& film, double excess, Wavelength wavelengt
   if (!at) return;
   const auto point = data.point(film, excess);
   auto& [o, d] = ray;
-  local_focus_loops().of<double>()(data.rules, at->maps, at->dispersion, data.first_order().z(), 1,
-                                   {&point.excess, &point.surface, &point.offset, &point.scale},
-                                   {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
+  camera_loops().twice.bend(data.rules, at->maps, at->dispersion, data.first_order().z(), 1,
+                            {&point.excess, &point.surface, &point.offset, &point.scale},
+                            {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
 }
 
 void LocalFocus::bend(const FilmPoint& film, const Dual& excess, Wavelength wavelength,

@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "best_focus.hpp"
+#include "camera_loops.hpp"
 #include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
-#include "core/widest.hpp"
 #include "iris/iris_edges.hpp"
 #include "make_model.hpp"
 #include "paraxial/ray_matrix.hpp"
-#include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "pupil_table/film_pupil_table.hpp"
@@ -26,8 +25,6 @@
 #include "two_disc_fit.hpp"
 
 namespace petzval::camera_detail {
-
-PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
 
 namespace {
 
@@ -262,19 +259,19 @@ void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const float>&
                              const RayWavelengths& wavelengths, const RayArrays<float>& rays, RayFate* fates,
                              const trace_detail::LensLight*, float*) const noexcept {
   SectionMaps own;
-  paraxial_loops().of_float(count, job<float>(wavelengths, own), lines, rays, fates);
+  camera_loops().single.map(count, job<float>(wavelengths, own), lines, rays, fates);
 }
 
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const double>& lines,
                              const RayWavelengths& wavelengths, const RayArrays<double>& rays, RayFate* fates,
                              const trace_detail::LensLight*, double*) const noexcept {
   SectionMaps own;
-  paraxial_loops().of_double(count, job<double>(wavelengths, own), lines, rays, fates);
+  camera_loops().twice.map(count, job<double>(wavelengths, own), lines, rays, fates);
 }
 
 RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                                 const trace_detail::LensLight*, double*) const noexcept {
-  const auto one = paraxial_loops().one;
+  const auto one = camera_loops().map_one;
   const std::size_t position = wavelength.position(primary_);
   if (position < to_scene_.size()) return one(&to_scene_[position], z_, reach_, line, ray);
   SectionMaps own;
