@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // not every larger integer is a double
 constexpr const char* integer_rule = "an integer up to 2^53";
-constexpr std::size_t largest_text = std::size_t{16} << 20, deepest = 64, longest_list = 10'000;
+constexpr std::size_t largest_text = std::size_t{16} << 20, deepest = 64, longest_list = 10'000, longest_words = 160;
 
 /// Shortens text for messages: strings of a document may be long.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
@@ -130,10 +130,8 @@ class Builder {
 
   bool null() { return add(nullptr); }
   bool boolean(bool value) { return add(value); }
-  bool number_integer(std::int64_t value) { return integer(value, value >= -largest_integer); }
-  bool number_unsigned(std::uint64_t value) {
-    return integer(value, value <= static_cast<std::uint64_t>(largest_integer));
-  }
+  bool number_integer(std::int64_t value) { return add(value); }
+  bool number_unsigned(std::uint64_t value) { return add(value); }
   bool number_float(double, const std::string& token);
   bool string(std::string& value) { return add(std::move(value)); }
   bool binary(nlohmann::json::binary_t&) { return false; }  // does not occur in JSON text
@@ -154,31 +152,28 @@ class Builder {
     throw Error(where_ + tokens_.position(byte) + ": " + message);
   }
   [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
-    fail(tokens_.byte(), refusal(words_(path_), value, rule));
+    fail(tokens_.byte(), refusal(value_name(), value, rule));
   }
+  std::string value_name() const { return shortened(words_(path_), longest_words); }
   std::string located(const std::string& message) const {
-    const std::string words = words_(path_);
-    return words.empty() ? message : words + ": " + message;
+    return value_name().empty() ? message : value_name() + ": " + message;
+  }
+  bool in_list() const noexcept { return !levels_.empty() && levels_.back().json->is_array(); }
+  /// Moves the path to the next value.
+  void name_value() {
+    if (!in_list()) return;
+    path_.resize(levels_.back().path_size);
+    path_ += '[' + std::to_string(levels_.back().json->size()) + ']';
   }
   /// The place of the next value.
   nlohmann::json& slot() {
     tokens_.next();
-    if (levels_.empty() || levels_.back().json->is_object()) return *next_;
-    auto& [list, path_size] = levels_.back();
-    path_.resize(path_size);
-    path_ += '[' + std::to_string(list->size()) + ']';
-    return list->emplace_back();
+    name_value();
+    return in_list() ? levels_.back().json->emplace_back() : *next_;
   }
   template <class Value>
   bool add(Value&& value) {
     slot() = std::forward<Value>(value);
-    return true;
-  }
-  template <class Integer>
-  bool integer(Integer value, bool is_double) {
-    nlohmann::json& place = slot();
-    if (!is_double) refuse(std::to_string(value), integer_rule);
-    place = value;
     return true;
   }
   bool open(nlohmann::json::value_t type) {
@@ -235,7 +230,10 @@ bool Builder::parse_error(std::size_t, const std::string&, const nlohmann::json:
   const std::size_t last = tokens_.byte();
   tokens_.next();
   const std::string_view token = tokens_.token();
-  if (dynamic_cast<const nlohmann::json::out_of_range*>(&error)) refuse(shortened(token), "a finite number");
+  if (dynamic_cast<const nlohmann::json::out_of_range*>(&error)) {
+    name_value();
+    refuse(shortened(token), "a finite number");
+  }
   // A common mistake in lenses typed by hand.
   const std::string_view before = tokens_.before();
   const bool decimal_comma = tokens_.separator() == ',' && !token.empty() && is_digit(token[0]) && !before.empty() &&
@@ -313,14 +311,20 @@ JsonTree::JsonTree(std::string_view text, std::string where, Words words) : Json
 JsonTree::~JsonTree() { empty(root_); }
 
 void JsonTree::fail(const std::string& path, const std::string& message, const std::string& key) const {
-  const std::string location = words_(path);
+  const std::string location = shortened(words_(path), longest_words);
   const bool at_key = !key.empty();
   throw Error(where_ + json_position(text_, at_key ? key : path, at_key) + ": " + location +
               (location.empty() ? "" : ": ") + message);
 }
 
 void JsonTree::refuse(const std::string& path, const std::string& value, const std::string& rule) const {
-  throw Error(where_ + json_position(text_, path) + ": " + refusal(words_(path), value, rule));
+  throw Error(where_ + json_position(text_, path) + ": " +
+              refusal(shortened(words_(path), longest_words), value, rule));
+}
+
+bool JsonTree::is_bare(const std::string& path) const {
+  const auto byte = find_in_json(text_, path, false);
+  return byte && text_[*byte] != '"';
 }
 
 JsonPart::JsonPart(const JsonPart& list, std::size_t index)
@@ -332,7 +336,8 @@ JsonPart::JsonPart(const JsonPart& object, const std::string& key, const nlohman
 void JsonPart::refuse(const std::string& rule) const {
   const auto* word = json_.get_ptr<const std::string*>();
   tree_.refuse(path_,
-               word                ? in_quotes(*word)
+               is_bare_word()      ? *word
+               : word              ? in_quotes(*word)
                : json_.is_array()  ? "a list"
                : json_.is_object() ? "an object"
                : json_.is_number() ? to_text(json_.get<double>())
@@ -340,8 +345,17 @@ void JsonPart::refuse(const std::string& rule) const {
                rule);
 }
 
+bool JsonPart::is_bare_word() const {
+  const auto* word = json_.get_ptr<const std::string*>();
+  return word && is_not_finite(*word) && tree_.is_bare(path_);
+}
+
 double JsonPart::number(const char* rule) const {
   if (!json_.is_number()) refuse(rule);
+  const bool is_exact = json_.is_number_unsigned()  ? json_.get<std::uint64_t>() <= std::uint64_t{largest_integer}
+                        : json_.is_number_integer() ? json_.get<std::int64_t>() >= -largest_integer
+                                                    : true;
+  if (!is_exact) tree_.refuse(path_, json_.dump(), integer_rule);
   return json_.get<double>();
 }
 
@@ -352,7 +366,7 @@ int JsonPart::whole_number(int least, int most) const {
 }
 
 std::string JsonPart::text() const {
-  if (!json_.is_string()) refuse("a string");
+  if (!json_.is_string() || is_bare_word()) refuse("a string");
   return json_.get<std::string>();
 }
 
@@ -375,17 +389,18 @@ void JsonPart::each_member(const std::function<void(const std::string&, const Js
 }
 
 void JsonPart::read(std::initializer_list<JsonField> fields) const {
+  if (!json_.is_object()) refuse("an object");
+  for (const JsonField& field : fields) {
+    if (const auto member = json_.find(field.name); member != json_.end()) {
+      field.set(JsonPart(*this, std::string(field.name), *member));
+    }
+  }
   each_member([&](const std::string& key, const JsonPart& part) {
     if (std::ranges::find(fields, std::string_view(key), &JsonField::name) != fields.end()) return;
     std::string known;
     for (const JsonField& field : fields) known += (known.empty() ? "" : ", ") + std::string(field.name);
     tree_.fail(path_, "key " + in_quotes(key) + " is unknown; must be one of " + known, part.path_);
   });
-  for (const JsonField& field : fields) {
-    if (const auto member = json_.find(field.name); member != json_.end()) {
-      field.set(JsonPart(*this, std::string(field.name), *member));
-    }
-  }
   for (const JsonField& field : fields) {
     if (!field.required || json_.contains(field.name)) continue;
     fail("key " + in_quotes(field.name) + " is missing");

@@ -9,8 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "petzval/core/config.hpp"
 
@@ -26,9 +24,8 @@ class PETZVAL_API JsonTree {
 
   /// Parses a text, which must outlive the tree. Numbers are read from their digits, independent of the locale.
   /// @param where  file name, for messages
-  /// @throws Error, with line and column, if the text is not JSON, has a key twice in one object, a number out of range
-  ///         (integers: 2^53), brackets deeper than 64 levels or more than 16 MiB (a tree takes many times the memory
-  ///         of its text)
+  /// @throws Error, with line and column, if the text is not JSON, has a key twice in one object, a number out of
+  ///         range, brackets deeper than 64 levels or more than 16 MiB (a tree takes many times the memory of its text)
   JsonTree(std::string_view text, std::string where, Words words);
   ~JsonTree();
   JsonTree(const JsonTree&) = delete;
@@ -40,6 +37,8 @@ class PETZVAL_API JsonTree {
   [[noreturn]] void fail(const std::string& path, const std::string& message, const std::string& key = {}) const;
   /// Throws Error: "lens.json:11:8: surface 1: radius = value; must be rule".
   [[noreturn]] void refuse(const std::string& path, const std::string& value, const std::string& rule) const;
+  /// True if the value at a path is not in quotes in the text.
+  bool is_bare(const std::string& path) const;
 
  private:
   JsonTree() = default;
@@ -57,6 +56,7 @@ class PETZVAL_API JsonPart {
  public:
   explicit JsonPart(const JsonTree& tree) : tree_(tree), json_(tree.root()) {}
 
+  /// Integers: up to 2^53.
   double number(const char* rule = "a number") const;
   int whole_number(int least, int most) const;
   std::string text() const;
@@ -75,7 +75,7 @@ class PETZVAL_API JsonPart {
   void each(const std::function<void(const JsonPart&)>& read) const;
   /// Calls `read` for each member of an object, with its key.
   void each_member(const std::function<void(const std::string&, const JsonPart&)>& read) const;
-  /// Reads the members of an object. Refuses unknown keys before it reads and missing keys afterwards.
+  /// Reads the members of an object, in the order of `fields`. Then refuses unknown and missing keys.
   void read(std::initializer_list<JsonField> fields) const;
 
   /// Throws Error: "lens.json:11:8: message", with the words of the path in front of the message.
@@ -83,6 +83,8 @@ class PETZVAL_API JsonPart {
   [[noreturn]] void refuse(const std::string& rule) const;
 
  private:
+  /// True for Infinity, inf and NaN without quotes.
+  bool is_bare_word() const;
   JsonPart(const JsonPart& list, std::size_t index);
   JsonPart(const JsonPart& object, const std::string& key, const nlohmann::json& json);
 

@@ -219,6 +219,7 @@ void read_zoom(const Part& part, std::vector<Configuration>& list) {
     });
   };
   part.read({{"position", zoom.name}, {"variable_gaps", gaps}});
+  std::ranges::sort(zoom.changes, {}, &SurfaceChange::surface);
 }
 
 void read_document(const Part& part, Prescription& lens) {

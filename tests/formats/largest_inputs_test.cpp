@@ -117,6 +117,8 @@ TEST_F(LargestInputs, OfLenses) {
   const std::size_t entries = ((16 << 20) - 400) / 3;
   const std::string brackets = repeated("[[]", ",[]", entries, "]");
   expect_frugal("16 MiB of brackets, petzval-lens", R"({"surfaces": )" + brackets + "}", refused);
+  expect_frugal("16 MiB of objects, petzval-lens", R"({"surfaces": )" + repeated("[{}", ",{}", entries, "]") + "}",
+                refused);
   expect_frugal("16 MiB of brackets, lentil", R"({"1": {"optical-elements-patent": )" + brackets + "}}", refused);
   expect_frugal("16 MiB of brackets, optiland",
                 R"({"surface_group": {"surfaces": [{"type": "ObjectSurface"}]}, "x": )" + brackets + "}", refused);

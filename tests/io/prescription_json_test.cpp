@@ -351,6 +351,8 @@ TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
   expect_refused(file(R"("name": 5)"), {"name", "5"});
   expect_refused(file(R"("name": null)"), {"name", "null"});
   expect_refused(file(R"("name": ["a"])"), {"name", "a list"});
+  expect_refused(file(R"("name": NaN)"), {"name = NaN", "a string"});
+  expect_refused(R"({"format": "petzval-lens 2", "new": 1})", {"format", "\"petzval-lens 2\""});
   expect_refused(file(R"("source": "a book")"), {"source", "\"a book\""});
   expect_refused(file(R"("source": [])"), {"source", "a list"});
   expect_refused(file(R"("source": {"design": 1})"), {"source", "design", "1"});
@@ -416,7 +418,7 @@ TEST(PrescriptionJson, NumbersBeyondDoubleAreRefused) {
   const auto radius = [](const std::string& number) { return refusal(with_surface("{\"radius\": " + number)); };
   for (const char* number :
        {"1e309", "-1e309", "1e-400", "9007199254740993", "-9223372036854775808", "18446744073709551616"}) {
-    EXPECT_TRUE(positioned(radius(number + std::string(",")), "x.json", {"surface 1", "radius", number}));
+    EXPECT_TRUE(positioned(radius(number + std::string("}")), "x.json", {"surface 1", "radius", number}));
   }
   const auto lens =
       parse_prescription(with_surface(R"({"radius": 9007199254740992, "thickness": 0, "nd": 1})"), "x.json");

@@ -20,7 +20,7 @@ PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
 
 /// Reads a lens from JSON in memory. Missing clear apertures stay absent.
 ///
-/// Time is proportional to the size of the text, which is at most 16 MiB; memory is at most 20 times its size.
+/// Time is proportional to the size of the text, which is at most 16 MiB; memory is at most 32 times its size.
 ///
 /// @param json   the text
 /// @param where  name of the source, for messages
