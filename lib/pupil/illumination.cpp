@@ -14,7 +14,6 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "pupil/pupil_boundary.hpp"
-#include "pupil_in_angles.hpp"
 #include "pupil_region.hpp"
 
 namespace petzval {

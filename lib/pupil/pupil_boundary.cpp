@@ -12,7 +12,6 @@
 #include "core/bisect.hpp"
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
-#include "pupil_in_angles.hpp"
 #include "pupil_ray_tracer.hpp"
 #include "pupil_region.hpp"
 
@@ -401,12 +400,9 @@ PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wave
   return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
 }
 
-namespace pupil_detail {
-
-PupilRegion pupil_in_angles(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions) {
+PupilRegion pupil_detail::pupil_in_angles(const Lens& lens, const FilmPoint& point, Wavelength wavelength,
+                                          std::size_t directions) {
   return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions, Coordinates::angles);
 }
-
-}  // namespace pupil_detail
 
 }  // namespace petzval

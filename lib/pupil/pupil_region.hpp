@@ -10,6 +10,10 @@ namespace petzval::pupil_detail {
 /// Area of a region (mm^2) from the sum of its squared radii over all directions.
 double area_of(const PupilRegion& region, double squared_radii) noexcept;
 
+/// The region of exit_pupil_boundary() in angles at the film point: a direction at the angle t from the film normal has
+/// the distance t from (0, 0). Unlike a plane, these coordinates include directions parallel to the film.
+PupilRegion pupil_in_angles(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
+
 /// One direction of a region, simplified to an interval from the middle and one obscuration. If rays are blocked at the
 /// middle, the obscuration is the blocked interval there, otherwise the widest gap between two spans.
 struct Extent {

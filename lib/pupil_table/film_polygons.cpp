@@ -4,20 +4,52 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/meet_plane.hpp"
-#include "film_lines.hpp"
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "pupil/aim.hpp"
+#include "pupil/surface_box.hpp"
+#include "trace/clearances.hpp"
 
 namespace petzval::pupil_table_detail {
-
 namespace {
+
+using pupil_detail::PositionClearances;
+using pupil_detail::PupilGuess;
+
+/// Clearances of rays from film points through positions in the pupil plane. The lens must outlive the result.
+PositionClearances traced_lines(const Lens& lens, const TwoPlanes& space, FilmPupils::Points points,
+                                std::size_t wavelength) {
+  const double towards = towards_scene(lens, space);
+  return [&lens, space, towards, wavelength, own = std::vector(points.begin(), points.end()),
+          memory = std::array<std::vector<double>, 6>{}](std::size_t count, const std::uint32_t* which, const double* x,
+                                                         const double* y, double* clearances) mutable {
+    // Blocks fit into the cache.
+    constexpr std::size_t block = 1024;
+    for (auto& a : memory) a.resize(std::min(count, block));
+    const auto at = [&](std::size_t k) { return memory[k].data(); };
+    const double depth = space.depth();
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t size = std::min(block, count - begin);
+      for (std::size_t i = 0; i < size; ++i) {
+        const FilmPoint& film = own[which[begin + i]].film;
+        const double px = x[begin + i], py = y[begin + i], dx = px - film.x, dy = py - film.y;
+        const double per_length = towards / std::sqrt(dx * dx + dy * dy + depth * depth);
+        memory[0][i] = px, memory[1][i] = py, memory[2][i] = space.pupil_z;
+        memory[3][i] = dx * per_length, memory[4][i] = dy * per_length, memory[5][i] = depth * per_length;
+      }
+      trace_detail::clearances<double>(lens, size, {at(0), at(1), at(2), at(3), at(4), at(5)}, clearances + begin,
+                                       {.travel = Travel::to_scene, .wavelengths = {wavelength}});
+    }
+  };
+}
 
 /// Intersection of the chief ray of a film point with the pupil plane.
 std::optional<Vec2<double>> chief_position(const Lens& lens, const TwoPlanes& space, const FilmPoint& film,
@@ -29,18 +61,49 @@ std::optional<Vec2<double>> chief_position(const Lens& lens, const TwoPlanes& sp
   return Vec2<double>{position.x, position.y};
 }
 
-std::vector<pupil_detail::PupilGuess> traced_guesses(const Lens& lens, const TwoPlanes& space,
-                                                     std::span<const FilmPoint> points, std::size_t wavelength) {
-  std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+/// Predictions of the pupils of film points. The last surface, which all rays pass, limits the size of a pupil.
+std::vector<PupilGuess> traced_guesses(const Lens& lens, const TwoPlanes& space, FilmPupils::Points points,
+                                       std::size_t wavelength) {
+  const Pupils paraxial = petzval::pupils(lens, wavelength);
+  const std::size_t last = lens.surface_count() - 1;
+  const double last_z = lens.surfaces()[last].vertex_z;
+  const pupil_detail::SurfaceBox box = pupil_detail::surface_box(lens, last, paraxial.entrance);
+  const auto seen = [&](double film, double at, double z) {  // projects to the pupil plane
+    return film + (at - film) * space.depth() / (z - space.film_z);
+  };
+  double radius = std::isfinite(paraxial.exit.z) && paraxial.exit.z != space.film_z
+                      ? std::abs(seen(0, paraxial.exit.diameter / 2, paraxial.exit.z))
+                      : 0;
+  const bool somewhere = radius > 0;
+  if (!somewhere) radius = std::abs(seen(0, box.half, last_z)) / 8;
+  const auto surfaces = lens.surfaces();
+  const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
+                                [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
+  std::vector<PupilGuess> result;
+  for (const auto& [p, layer] : points) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double z : {box.z_min, box.z_max, last_z}) {
+      // A face at the film would be seen at any angle; a face beyond the film counts as close to the film.
+      const double least = 0.02 * std::abs(space.film_z - last_z);
+      const double from_film = z - space.film_z;
+      const double at = space.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space.film_z);
+      for (const double edge : {-box.half, box.half}) {
+        low = std::min(low, seen(p.y, edge, at));
+        high = std::max(high, seen(p.y, edge, at));
+      }
+    }
+    const double across = lens.rotationally_symmetric() ? 0 : seen(p.x, 0, last_z), margin = 0.05 * (high - low);
+    const double y = seen(p.y, 0, somewhere ? paraxial.exit.z : last_z);
+    constexpr double radii = 16;
+    result.push_back({across, low - margin, high + margin, radius, y, radii * radius, ring});
+    PupilGuess& guess = result.back();
     // Aberrations move the image of a tiny stop by more than the size of the image, and first order does not describe
     // cylinders.
     constexpr double tiny_stop_ratio = 1e-3;
-    pupil_detail::PupilGuess& guess = guesses[i];
-    if (lens.rotationally_symmetric() && guess.radius > tiny_stop_ratio * (guess.high - guess.low)) continue;
-    if (const auto chief = chief_position(lens, space, points[i], wavelength)) guess.x = chief->x, guess.y = chief->y;
+    if (lens.rotationally_symmetric() && radius > tiny_stop_ratio * (guess.high - guess.low)) continue;
+    if (const auto chief = chief_position(lens, space, p, wavelength)) guess.x = chief->x, guess.y = chief->y;
   }
-  return guesses;
+  return result;
 }
 
 PupilChart film_chart(const FilmPupils& pupils, const FilmGrid& grid, PolygonFit fit, std::size_t wavelength) {
@@ -62,6 +125,24 @@ PupilChart film_chart(const FilmPupils& pupils, const FilmGrid& grid, PolygonFit
   chart.clearances = with_film(pupils.clearances);
   if (pupils.connected) chart.connected = with_film(pupils.connected);
   return chart;
+}
+
+/// Distance from the middle of the polygon to its edge in a direction; 0 if no sector faces the direction.
+double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
+  const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
+  // On the line to a corner, rounding may exclude the direction from both adjacent sectors.
+  for (const double aside : {0.0, 1e-9}) {
+    const Point<double> q{d.x + aside * d.y, d.y - aside * d.x};
+    const std::size_t found = sector_facing(q, sectors);
+    if (found != polygon_corners) return 1 / polygon.sector(found).relative_radius(q);
+  }
+  return 0;
+}
+
+/// Fraction of d at which the line along d, from a point at a height above the centre of a disc, leaves the disc.
+double leaves_disc(double height, double radius, const Vec2<double>& d) {
+  const double square = d.x * d.x + d.y * d.y, along = d.y * height;
+  return (std::sqrt(along * along + square * (radius * radius - height * height)) - along) / square;
 }
 
 }  // namespace
@@ -97,22 +178,14 @@ FilmPolygons traced_polygons(const Lens& lens, const TwoPlanes& space, double fi
                           return s.obscuration_semi_diameter > 0;
                         });
   const Lens open = obscured ? without_obscurations(lens) : lens;
-  const auto film_points = [](FilmPupils::Points points) {
-    std::vector<FilmPoint> film;
-    for (const auto& point : points) film.push_back(point.film);
-    return film;
-  };
   FilmPupils pupils{.of_revolution = of_revolution, .wavelengths = lens.wavelengths_nm().size()};
-  pupils.guesses = [&](FilmPupils::Points points, std::size_t w) {
-    return traced_guesses(open, space, film_points(points), w);
-  };
-  pupils.clearances = [&](FilmPupils::Points points, std::size_t w) {
-    return traced_lines(open, space, film_points(points), w);
-  };
+  pupils.guesses = [&](FilmPupils::Points points, std::size_t w) { return traced_guesses(open, space, points, w); };
+  pupils.clearances = [&](FilmPupils::Points points, std::size_t w) { return traced_lines(open, space, points, w); };
   const auto connected = [&](FilmPupils::Points points, std::size_t w) {
-    return pupil_detail::ConnectedPupils{
-        [&, w, film = film_points(points)](std::uint32_t i) { return chief_position(open, space, film[i], w); },
-        obscured ? traced_lines(lens, space, film_points(points), w) : pupil_detail::PositionClearances{}};
+    return pupil_detail::ConnectedPupils{[&, w, own = std::vector(points.begin(), points.end())](std::uint32_t i) {
+                                           return chief_position(open, space, own[i].film, w);
+                                         },
+                                         obscured ? traced_lines(lens, space, points, w) : PositionClearances{}};
   };
   if (of_revolution) pupils.connected = connected;
   return film_polygons(pupils, film_radius, fit, threads);
@@ -136,14 +209,28 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
     overlap = polygon_within(middle, (high - low) / 2, [&](const Vec2<double>& d) {
       double nearest = std::numeric_limits<double>::infinity();
       for (const PupilDisc& disc : discs) {
-        const double from_centre = middle.y - disc.shift * height, square = d.x * d.x + d.y * d.y;
-        const double b = d.y * from_centre, c = disc.radius * disc.radius - from_centre * from_centre;
-        nearest = std::min(nearest, (std::sqrt(b * b + square * c) - b) / square);
+        nearest = std::min(nearest, leaves_disc(middle.y - disc.shift * height, disc.radius, d));
       }
       return nearest;
     });
   }
   return polygons;
+}
+
+PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double radius) {
+  constexpr Vec2<double> towards{0, 1};
+  // Common interval of polygon and disc along y through the middle.
+  const double from_middle = centre - polygon.middle.y;
+  const double low = std::max(-reach(polygon, -towards), from_middle - radius);
+  const double high = std::min(reach(polygon, towards), from_middle + radius);
+  const double step = low < high ? (low + high) / 2 : from_middle;
+  PupilPolygon about_middle = polygon;
+  about_middle.middle = {0, polygon.middle.y + step};
+  for (auto& corner : about_middle.corners) corner -= step * towards;
+  if (!(low < high)) return {.middle = about_middle.middle};
+  return polygon_within(about_middle.middle, (high - low) / 2, [&](const Vec2<double>& d) {
+    return std::min(reach(about_middle, d), leaves_disc(step - from_middle, radius, d));
+  });
 }
 
 }  // namespace petzval::pupil_table_detail

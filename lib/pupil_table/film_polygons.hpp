@@ -54,4 +54,8 @@ FilmPolygons tilted_polygons(const FilmPupilTable& upright, bool of_revolution, 
 /// The overlap of some discs, as polygons of equal area.
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius);
 
+/// The intersection of a polygon and a disc, both centred on the y axis, with a new middle point. Each corner moves
+/// along the line from the new middle to the old corner. Obscurations are ignored.
+PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double radius);
+
 }  // namespace petzval::pupil_table_detail

@@ -7,7 +7,6 @@
 #include "core/dual.hpp"
 #include "film_pupil_data.hpp"
 #include "petzval/core/error.hpp"
-#include "polygon_clearance.hpp"
 #include "pupil/line_extents.hpp"
 #include "pupil_kernel.hpp"
 
@@ -46,6 +45,27 @@ struct PolygonAt {
   }
   Point<double> to_grid(double x, double y) const noexcept {
     return Grid::Chart::to_grid(cell, Point<double>{x, y}) - middle();
+  }
+  /// Clearance as in FilmPupilTable::clearances() of a position relative to the middle.
+  /// @param facing on input, the first sector to try; on output, the sector that faces the position
+  double clearance(const Point<double>& q, std::int32_t& facing) const noexcept {
+    Sector<double> own = sector(facing);
+    if (!own.faces(q)) {
+      const auto sectors = [this](std::size_t k) { return sector(static_cast<std::int32_t>(k)); };
+      const auto first = sector_before(q, [this](std::int32_t k) { return corner(k); });
+      const std::size_t found = sector_facing(q, sectors, static_cast<std::size_t>(first));
+      if (found == polygon_corners) return -1;
+      facing = static_cast<std::int32_t>(found);
+      own = sector(facing);
+    }
+    constexpr double farthest = 1e150;  // its square is finite
+    const double radius = std::min(own.relative_radius(q), farthest), squared = radius * radius;
+    double least = 1 - squared;
+    if (own.obscured > 0) {
+      const double inner = own.obscured_from - squared, outer = squared - own.obscured_from - own.obscured;
+      least = std::min(least, std::max(inner, outer));
+    }
+    return least < 0 ? least / (1 - least) : least;
   }
 };
 
@@ -243,11 +263,11 @@ void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const doub
   }
   const std::int32_t position = data_->known(wavelength);
   data_->with_grid<double>([&](const auto& grid) {
-    std::size_t sector = 0;
+    std::int32_t sector = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const PolygonAt polygon(grid, {lines.film_x[i], lines.film_y[i]}, position);
       const Point<double> q = polygon.to_grid(lines.pupil_x[i], lines.pupil_y[i]);
-      clearances[i] = polygon.cell.known ? clearance_at(polygon, q, sector) : -1;
+      clearances[i] = polygon.cell.known ? polygon.clearance(q, sector) : -1;
     }
   });
 }

@@ -5,18 +5,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/text.hpp"
-#include "disc_clip.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "repeated_wavelength.hpp"
 
 namespace petzval {
 namespace {
@@ -91,8 +90,14 @@ void check_table(const TwoPlanes& space, double film_radius, std::size_t count, 
     if (!(nm > 0 && std::isfinite(nm)))
       throw Error(where + "wavelength = " + to_text(nm) + " nm; must be finite and above 0");
   }
-  if (const auto repeated = repeated_wavelength(wavelengths_nm)) {
-    throw Error(where + "wavelength " + std::to_string(*repeated) + " = " + to_text(wavelengths_nm[*repeated]) +
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t w) { return wavelengths_nm[w]; });
+  for (std::size_t i = 1; i < count; ++i) {
+    constexpr double tolerance_nm = 1e-6;  // of compile()
+    if (wavelengths_nm[order[i]] - wavelengths_nm[order[i - 1]] > tolerance_nm) continue;
+    const std::size_t repeated = std::max(order[i - 1], order[i]);
+    throw Error(where + "wavelength " + std::to_string(repeated) + " = " + to_text(wavelengths_nm[repeated]) +
                 " nm; must differ from all others");
   }
 }

@@ -9,7 +9,6 @@
 
 #include "film_polygons.hpp"
 #include "pupil/boundary_search.hpp"
-#include "virtual_film_point.hpp"
 
 namespace petzval::pupil_table_detail {
 namespace {
@@ -25,6 +24,15 @@ struct ExcessRange {
     high = std::clamp(std::max(along, at_end(along)), tilt.min_excess, tilt.max_excess);
   }
   double at(double fraction) const noexcept { return low + fraction * (high - low); }
+};
+
+/// A virtual film point of a tilted film, with the value of `excess` for one of its film points (see FilmTilt).
+struct VirtualFilmPoint {
+  FilmPoint at;
+  double excess = 0;
+
+  /// Intersection of the upright film with the ray from that film point through (x, y) in the pupil plane.
+  FilmPoint on_upright(double x, double y) const noexcept { return {at.x - excess * x, at.y - excess * y}; }
 };
 
 /// Predicts the pupil of a virtual film point from a pupil of the upright film; if that pupil is empty, the film point
@@ -65,8 +73,17 @@ FilmPolygons tilted_polygons(const FilmPupilTable& upright, bool of_revolution, 
   pupils.clearances = [&](FilmPupils::Points points, std::size_t w) -> pupil_detail::PositionClearances {
     return [&upright, w, from = virtual_points(points)](std::size_t count, const std::uint32_t* which, const double* x,
                                                         const double* y, double* clearances) {
-      upright_clearances(
-          upright, w, count, [&](std::size_t i) { return from[which[i]]; }, x, y, clearances);
+      constexpr std::size_t block = 256;
+      std::array<double, block> film_x, film_y;
+      for (std::size_t begin = 0; begin < count; begin += block) {
+        const std::size_t size = std::min(block, count - begin);
+        for (std::size_t i = 0; i < size; ++i) {
+          const std::size_t k = begin + i;
+          const FilmPoint film = from[which[k]].on_upright(x[k], y[k]);
+          film_x[i] = film.x, film_y[i] = film.y;
+        }
+        upright.clearances(size, {film_x.data(), film_y.data(), x + begin, y + begin}, w, clearances + begin);
+      }
     };
   };
   return film_polygons(pupils, tilt.radius, PolygonFit::enclosing, threads);
