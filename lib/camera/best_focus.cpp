@@ -7,8 +7,8 @@
 #include "core/meet_plane.hpp"
 #include "paraxial/ray_matrix.hpp"
 #include "petzval/trace/trace.hpp"
-#include "pupil/boundary_nodes.hpp"
 #include "pupil/pupil_boundary.hpp"
+#include "pupil/pupil_nodes.hpp"
 
 namespace petzval::camera_detail {
 

@@ -11,8 +11,8 @@
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
-#include "pupil/boundary_nodes.hpp"
 #include "pupil/pupil_boundary.hpp"
+#include "pupil/pupil_nodes.hpp"
 
 namespace petzval {
 namespace {

@@ -26,12 +26,7 @@ using kernel::Vec;
 
 /// The unknown: transverse components of the unit direction in which a ray leaves the stop, towards the side of the
 /// point.
-struct Slope {
-  double x = 0, y = 0;
-
-  Slope operator+(const Slope& s) const noexcept { return {x + s.x, y + s.y}; }
-  Slope operator*(double s) const noexcept { return {x * s, y * s}; }
-};
+using Slope = Vec2<double>;
 
 /// A ray behind the stop and the lens. The error is the sine of the angle between `direction` and the direction to the
 /// point: its components in the meridian of the point (along) and perpendicular to the meridian (across).

@@ -10,7 +10,6 @@
 
 #include "line_extents.hpp"
 #include "pupil/pupil_boundary.hpp"
-#include "search_order.hpp"
 
 namespace petzval::pupil_detail {
 
@@ -21,6 +20,31 @@ struct PupilGuess {
   double radius = 1;                 ///< approximate radius of the pupil
   double y = 0, near = 0;            ///< the search begins between y - near and y + near; near = 0: no prediction
   bool ring = false;                 ///< true if the lens has a central obscuration: the pupil may be a clipped ring
+};
+
+/// A point about halfway between two neighbours, from whose pupils its pupil is predicted. The far neighbours continue
+/// the same spacing on both sides; equal to `point` if there is no far neighbour.
+struct Halfway {
+  std::uint32_t point, before, after, far_before, far_after;
+};
+
+/// Order in which pupils are searched: some points in full, then the points halfway between them, in rounds.
+struct SearchOrder {
+  std::vector<std::uint32_t> full;
+  std::vector<std::vector<Halfway>> rounds;
+
+  /// Order for points in rows of length `row`; adjacent points of a row have similar pupils.
+  static SearchOrder rows(std::size_t points, std::size_t row);
+  /// Order for a grid in which adjacent rows have similar pupils: two columns first, then the rows between them.
+  static SearchOrder grid(std::size_t rows, std::size_t row);
+
+ private:
+  struct Line {
+    std::size_t begin, stride, count;
+
+    std::uint32_t at(std::size_t index) const noexcept { return static_cast<std::uint32_t>(begin + stride * index); }
+  };
+  void halve(const Line& line, std::size_t first_step, std::size_t first_round);
 };
 
 /// Makes the pupils of a lens connected: only the component around the chief ray is kept.

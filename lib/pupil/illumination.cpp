@@ -7,13 +7,13 @@
 #include <limits>
 #include <numbers>
 
-#include "boundary_nodes.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "pupil/pupil_boundary.hpp"
+#include "pupil_nodes.hpp"
 #include "pupil_region.hpp"
 
 namespace petzval {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "box.hpp"
 #include "core/bisect.hpp"
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
@@ -19,20 +20,10 @@ namespace petzval {
 namespace {
 
 using Point = Vec2<double>;
+using pupil_detail::Box;
 using pupil_detail::Coordinates;
 using pupil_detail::PassingPoint;
 using pupil_detail::PupilRayTracer;
-
-struct Box {
-  Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Point high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-
-  void take(const Point& p) noexcept {
-    for (int i : {0, 1}) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
-  }
-  Point middle() const noexcept { return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2}; }
-  Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
-};
 
 /// The bounding box of the ends of all spans.
 Box box_of(const PupilRegion& region) noexcept {

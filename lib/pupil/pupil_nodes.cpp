@@ -8,7 +8,6 @@
 
 #include "core/bisect.hpp"
 #include "petzval/trace/trace.hpp"
-#include "pupil/boundary_nodes.hpp"
 #include "trace_rays.hpp"
 
 namespace petzval::pupil_detail {
@@ -49,12 +48,8 @@ void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& p
     if (one.to.surface == other.to.surface || one.from_radius > 0 || other.from_radius > 0) continue;
     // Search along the chord, which every line outwards from the middle crosses once.
     const auto edge = [&](double fraction) {
-      const Position chord{one.to.x + fraction * (other.to.x - one.to.x),
-                           one.to.y + fraction * (other.to.y - one.to.y)};
-      const auto at = [&](double reach) {
-        return Position{boundary.middle[0] + reach * (chord[0] - boundary.middle[0]),
-                        boundary.middle[1] + reach * (chord[1] - boundary.middle[1])};
-      };
+      const Position from{one.to.x, one.to.y}, chord = from + fraction * (Position{other.to.x, other.to.y} - from);
+      const auto at = [&](double reach) { return boundary.middle + reach * (chord - boundary.middle); };
       int surface = one.to.surface;
       const double last = core_detail::last_with(0.5, 2.0, [&](double reach) {
         const auto end = traced(at(reach));

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "aim.hpp"
-#include "angle_map.hpp"
+#include "box.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 #include "surface_box.hpp"
@@ -20,20 +20,6 @@ namespace {
 using Position = Vec2<double>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Box {
-  Position low{infinity, infinity}, high{-infinity, -infinity};
-
-  void take(const Position& p) noexcept {
-    for (int i : {0, 1}) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
-  }
-};
-
-/// The box of all directions.
-Box hemisphere(const AngleMap& angle_map) noexcept {
-  const double all = 1 / angle_map.per_distance();
-  return {{-all, -all}, {all, all}};
-}
 
 /// The box, in sines, of the surface through which rays enter, seen from the point of a plane.
 Box visible_surface(const Lens& lens, const PupilPlane& plane, const AngleMap& angle_map) {
@@ -52,11 +38,12 @@ Box visible_surface(const Lens& lens, const PupilPlane& plane, const AngleMap& a
       const double z = revolved ? revolved_z : sag(lens, entered, x, y);
       if (std::isnan(z)) continue;
       const Vec3<double> position{x, y, vertex_z + z};
-      // Such a surface surrounds the point and may be seen at any angle.
       const double before =
           glm::dot(plane.towards() - (position - plane.centre()) * plane.reciprocal_distance(), plane.normal());
       if (facing == 0) facing = before;
-      if (!(before / facing > 0.01)) return hemisphere(angle_map);
+      // A surface that surrounds the point may be seen at any angle.
+      const double all = 1 / angle_map.per_distance();
+      if (!(before / facing > 0.01)) return {{-all, -all}, {all, all}};
       box.take(angle_map.of(plane.meet({position, plane.direction_at(position)})));
     }
   }
@@ -112,8 +99,8 @@ struct Grid {
   }
 };
 
-}  // namespace
-
+/// Indices of local maxima among negative values on a grid with rows of length `row`. Near such a maximum a component
+/// of a pupil may lie between grid points. Border points are left out.
 std::vector<std::size_t> local_maxima(std::span<const double> values, std::size_t row) {
   std::vector<std::size_t> result;
   for (std::size_t i = row; i + row < values.size(); ++i) {
@@ -127,6 +114,8 @@ std::vector<std::size_t> local_maxima(std::span<const double> values, std::size_
   }
   return result;
 }
+
+}  // namespace
 
 PupilRayTracer::PupilRayTracer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength,
                                Coordinates coordinates)

@@ -16,8 +16,7 @@ Vec2<double> PupilRegion::unit(std::size_t direction) const noexcept {
 }
 
 Vec2<double> PupilRegion::at(std::size_t direction, double radius) const noexcept {
-  const Vec2<double> p = unit(direction);
-  return {middle.x + half_axes.x * radius * p.x, middle.y + half_axes.y * radius * p.y};
+  return middle + half_axes * radius * unit(direction);
 }
 
 double PupilRegion::area() const noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "search_order.hpp"
-
 #include <algorithm>
 #include <bit>
+
+#include "boundary_search.hpp"
 
 namespace petzval::pupil_detail {
 

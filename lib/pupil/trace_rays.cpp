@@ -97,12 +97,9 @@ RayBundle trace_rays(const Lens& lens, double plane_z, std::size_t count, const 
 }
 
 void append(RayBundle& bundle, const RayBundle& more) {
-  const auto add = [&](std::vector<double> RayBundle::*values) {
-    (bundle.*values).insert((bundle.*values).end(), (more.*values).begin(), (more.*values).end());
-  };
   for (const auto values :
        {&RayBundle::x, &RayBundle::y, &RayBundle::slope_x, &RayBundle::slope_y, &RayBundle::weights}) {
-    add(values);
+    (bundle.*values).insert((bundle.*values).end(), (more.*values).begin(), (more.*values).end());
   }
   bundle.sent += more.sent;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "pupil/box.hpp"
 #include "pupil/pupil_plane.hpp"
 
 namespace petzval::pupil_table_detail {
@@ -20,6 +21,8 @@ struct SeenRay {
 };
 
 namespace {
+
+using pupil_detail::Box;
 
 /// Direction from a centre to the point at which a ray leaves a sphere about the centre.
 Bearing<double> bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray,
@@ -57,22 +60,10 @@ std::vector<SeenRay> seen_from(const Vec3<double>& centre, double reciprocal, co
   return seen;
 }
 
-/// Bounds of positions.
-struct Bounds {
-  Vec2<double> low{0, 0}, high{0, 0};
-  bool any = false;
-
-  void take(const Vec2<double>& p) noexcept {
-    low = any ? glm::min(low, p) : p;
-    high = any ? glm::max(high, p) : p;
-    any = true;
-  }
-};
-
 /// Search areas for the pupils of the points of one layer: bounds of the rays of these fields.
 std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<SeenRay>& rays, const Vec2<double>& last,
                                                    const Lattice& points) {
-  std::vector<Bounds> bounds(points.layer());
+  std::vector<Box> bounds(points.layer());
   for (const SeenRay& ray : rays) {
     // A ray is used for the points of its cell and of the adjacent cells.
     const auto first = [&](int i, std::size_t steps) {
@@ -86,14 +77,14 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<SeenRay>& r
     }
   }
   Vec2<double> half_extent{0, 0};
-  for (const Bounds& b : bounds) half_extent = glm::max(half_extent, (b.high - b.low) / 2.0);
-  const auto known = [](const Bounds& b) { return b.any; };
+  for (const Box& b : bounds) half_extent = glm::max(half_extent, b.half());
+  const auto known = [](const Box& b) { return !b.empty(); };
   auto last_known = std::find_if(bounds.begin(), bounds.end(), known);
   std::vector<pupil_detail::PupilGuess> guesses;
   for (auto b = bounds.begin(); b != bounds.end() && last_known != bounds.end(); ++b) {
-    if (b->any) last_known = b;
-    const Vec2<double> middle = (last_known->low + last_known->high) / 2.0;
-    const double half = std::max((last_known->high.y - last_known->low.y) / 2, 0.05 * half_extent.y);
+    if (!b->empty()) last_known = b;
+    const Vec2<double> middle = last_known->middle();
+    const double half = std::max(last_known->half().y, 0.05 * half_extent.y);
     guesses.push_back({points.steps[1] == 0 ? 0 : middle.x, middle.y - 4 * half_extent.y, middle.y + 4 * half_extent.y,
                        half_extent.x, middle.y, 3 * half});
   }
