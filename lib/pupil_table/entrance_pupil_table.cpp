@@ -33,6 +33,35 @@ double cone(double radius, double distance) noexcept {
   return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
 }
 
+/// Largest distance of rays from the point z on the axis.
+double farthest_ray(const std::vector<Ray<double>>& rays, double z) noexcept {
+  double farthest = 0;
+  for (const Ray<double>& ray : rays) {
+    farthest = std::max(farthest, glm::length(glm::cross(ray.origin - Vec3<double>{0, 0, z}, ray.direction)));
+  }
+  return farthest;
+}
+
+/// Position on the axis of the centre of the smallest ball that all rays meet.
+double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) noexcept {
+  const auto radius = [&](double z) {
+    double largest = 0;
+    for (const auto& own : rays) largest = std::max(largest, farthest_ray(own, z));
+    return largest;
+  };
+  // The distance from a line is a convex function of the position on the axis, and so is the maximum over lines:
+  // ternary search.
+  for (int i = 0; i < 24; ++i) {
+    const double a = first + (last - first) / 3, b = last - (last - first) / 3;
+    if (radius(a) < radius(b)) {
+      last = b;
+    } else {
+      first = a;
+    }
+  }
+  return (first + last) / 2;
+}
+
 /// Expands the nodes of each wavelength to contain the pupils up to halfway to the adjacent wavelengths.
 template <int angles>
 void expand_to_neighbours(std::vector<SceneNodes<angles>>& tables, const lens_detail::CompiledWavelengths& compiled) {
@@ -75,10 +104,6 @@ struct EntrancePupilTable::Data {
     // Points outside the rim of the front element may lie behind its vertex: their fields exceed 90 degrees.
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
   }
-  /// Largest distance of rays from the point z on the axis.
-  double farthest(const std::vector<Ray<double>>& rays, double z) const noexcept;
-  /// Position on the axis of the centre of the smallest ball that all rays meet.
-  double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
 
   /// Makes the nodes of all wavelengths.
   /// @param of_wavelength function; of_wavelength(w) makes the nodes of wavelength w
@@ -95,12 +120,11 @@ struct EntrancePupilTable::Data {
         table.polygons.resize(SceneNodes<angles>::lattice.size());
       }
       widest.insert(widest.end(), table.widest.begin(), table.widest.end());
-      for (const PupilPolygon& p : table.polygons) add(p);
+      for (const PupilPolygon& p : table.polygons) {
+        p.append_to(nodes);
+        obscured = obscured || p.is_obscured();
+      }
     }
-  }
-  void add(const PupilPolygon& p) {
-    p.append_to(nodes);
-    obscured = obscured || p.is_obscured();
   }
 
   template <int angles>
@@ -142,7 +166,21 @@ struct EntrancePupilTable::Data {
     return widest[wavelength * (widest.size() / balls.size())] > 0 && steepest * distance >= 1;
   }
   /// Samples the cone of the ball, for points without a pupil in the grid.
-  EntranceSample in_cone(const Vec3<double>& point, std::size_t wavelength, double u, double v) const noexcept;
+  EntranceSample in_cone(const Vec3<double>& point, std::size_t wavelength, double u, double v) const noexcept {
+    EntranceSample sample{.origin = centre};
+    if (!sees(point, wavelength) || !std::isfinite(u) || !std::isfinite(v)) return sample;
+    const Vec3<double> from_centre = point - centre;
+    const double distance = glm::length(from_centre);
+    if (covers(wavelength, distance)) return sample;
+    const Vec3<double> unit = from_centre / distance;
+    const double solid = cone(balls[wavelength], distance), less = std::clamp(v, 0.0, 1.0) * solid / (2 * pi);
+    const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u;
+    const auto across =
+        ray_to_lens(bearing_of(unit.x, unit.y, unit.z), 1.0, {sine * std::cos(angle), sine * std::sin(angle)});
+    const Vec3<double> direction = unit * (less - 1) + Vec3<double>{across.x, across.y, across.z};
+    const double far = std::max(distance * (1 - less), 0.0);
+    return {point + direction * far, direction, far, 1 / solid};
+  }
   /// A sample of the grid, or of the cone if the grid has none.
   /// @param number function; number(k) is number k of scene_sample()
   template <class Number>
@@ -152,51 +190,6 @@ struct EntrancePupilTable::Data {
     return {{number(0), number(1), number(2)}, {number(3), number(4), number(5)}, number(6), number(7)};
   }
 };
-
-double EntrancePupilTable::Data::farthest(const std::vector<Ray<double>>& rays, double z) const noexcept {
-  double farthest = 0;
-  for (const Ray<double>& ray : rays) {
-    farthest = std::max(farthest, glm::length(glm::cross(ray.origin - Vec3<double>{0, 0, z}, ray.direction)));
-  }
-  return farthest;
-}
-
-double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<double>>> rays, double first,
-                                            double last) const noexcept {
-  const auto radius = [&](double z) {
-    double largest = 0;
-    for (const auto& own : rays) largest = std::max(largest, farthest(own, z));
-    return largest;
-  };
-  // The distance from a line is a convex function of the position on the axis, and so is the maximum over lines:
-  // ternary search.
-  for (int i = 0; i < 24; ++i) {
-    const double a = first + (last - first) / 3, b = last - (last - first) / 3;
-    if (radius(a) < radius(b)) {
-      last = b;
-    } else {
-      first = a;
-    }
-  }
-  return (first + last) / 2;
-}
-
-EntranceSample EntrancePupilTable::Data::in_cone(const Vec3<double>& point, std::size_t wavelength, double u,
-                                                 double v) const noexcept {
-  EntranceSample sample{.origin = centre};
-  if (!sees(point, wavelength) || !std::isfinite(u) || !std::isfinite(v)) return sample;
-  const Vec3<double> from_centre = point - centre;
-  const double distance = glm::length(from_centre);
-  if (covers(wavelength, distance)) return sample;
-  const Vec3<double> unit = from_centre / distance;
-  const double solid = cone(balls[wavelength], distance), less = std::clamp(v, 0.0, 1.0) * solid / (2 * pi);
-  const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u;
-  const auto across =
-      ray_to_lens(bearing_of(unit.x, unit.y, unit.z), 1.0, {sine * std::cos(angle), sine * std::sin(angle)});
-  const Vec3<double> direction = unit * (less - 1) + Vec3<double>{across.x, across.y, across.z};
-  const double far = std::max(distance * (1 - less), 0.0);
-  return {point + direction * far, direction, far, 1 / solid};
-}
 
 EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays,
                                        const ScenePassing& passing, int threads) {
@@ -211,12 +204,12 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   const double length = std::abs(lens.surfaces().back().vertex_z) + box.half;
   const double first = box.z_min, last = box.z_max + 4 * length;
   data->centre.z = std::clamp(entrance.z, first, last);
-  if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(rays, first, last);
+  if (!lens.rotationally_symmetric()) data->centre.z = least_ball(rays, first, last);
   const double along = std::max(data->centre.z - box.z_min, box.z_max - data->centre.z);
   double reach = std::hypot(box.half, along);  // contains the front surface; grid points lie farther out
   for (const auto& own : rays) {
     const double between_rays = lens.rotationally_symmetric() ? 1.15 : 1.2;
-    data->balls.push_back(between_rays * data->farthest(own, data->centre.z));
+    data->balls.push_back(between_rays * farthest_ray(own, data->centre.z));
     reach = std::max(reach, data->balls.back());
   }
   // With cylinders, the pupils of near points move too fast for the small number of nodes.
@@ -312,21 +305,13 @@ void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, co
   std::fill_n(samples, count, EntranceSample{.origin = data.centre});
   if (!data.sees(point, position)) return;
   const bool known = data.with_cell(point, position, [&](const auto& grid, const auto& cell) {
-    std::array<Sector<double>, polygon_corners> sectors;
-    std::array<double, polygon_corners + 1> before{};
-    for (std::size_t k = 0; k < polygon_corners; ++k) {
-      sectors[k] = sector_of<true, double>(grid, cell, static_cast<std::int32_t>(k));
-      before[k + 1] = before[k] + std::max(sectors[k].area(), 0.0);
-    }
-    const double whole = before[polygon_corners];
+    const PolygonSampler sampler(
+        [&](std::size_t k) { return sector_of<true, double>(grid, cell, static_cast<std::int32_t>(k)); });
+    const double whole = sampler.area();
     const Point<double> middle = middle_of<double>(grid, cell);
     for (std::size_t i = 0; i < count && whole > 0; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const double area = std::clamp(u[i], 0.0, 1.0) * whole, squared_radius = std::clamp(v[i], 0.0, 1.0);
-      const std::size_t k = sector_of_area(area, [&before](std::size_t j) { return before[j]; });
-      const double own = before[k + 1] - before[k];
-      const double along = own > 0 ? std::clamp((area - before[k]) / own, 0.0, 1.0) : 0;
-      const Point<double> in_grid = middle + sectors[k].at(std::sqrt(sectors[k].squared_radius(squared_radius)), along);
+      const Point<double> in_grid = middle + sampler(u[i], v[i]);
       const auto ray = ray_to_lens(cell.bearing, cell.distance, grid.chart.to_film(cell, in_grid));
       samples[i] = {data.centre + Vec3<double>{ray.x, ray.y, ray.z},
                     {ray.dx, ray.dy, ray.dz},

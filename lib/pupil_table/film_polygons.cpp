@@ -145,7 +145,112 @@ double leaves_disc(double height, double radius, const Vec2<double>& d) {
   return (std::sqrt(along * along + square * (radius * radius - height * height)) - along) / square;
 }
 
+/// The overlap of some discs for a film point on +y.
+PupilPolygon overlap_of(std::span<const PupilDisc> discs, double height) {
+  // The overlap ends where the first of the discs ends.
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  for (const PupilDisc& disc : discs) {
+    low = std::max(low, disc.shift * height - disc.radius);
+    high = std::min(high, disc.shift * height + disc.radius);
+  }
+  if (!(low < high)) return {};
+  const Vec2<double> middle{0, (low + high) / 2};
+  // Fraction of d at which a line outwards from the middle leaves the first disc.
+  return polygon_within(middle, (high - low) / 2, [&](const Vec2<double>& d) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const PupilDisc& disc : discs) {
+      nearest = std::min(nearest, leaves_disc(middle.y - disc.shift * height, disc.radius, d));
+    }
+    return nearest;
+  });
+}
+
+/// Tests which film points rays reach at any wavelength.
+using LitPoints = std::function<std::vector<bool>(const std::vector<FilmPoint>& points)>;
+
+constexpr std::size_t grid_steps = 8;  // steps between the nodes of an axis
+
+/// Lengths of lines up to the last film point that rays reach, at most `lengths`; 0 for a dark line.
+/// @param point function; point(line, length) is the film point at the end of a line of this length
+template <class PointAt>
+std::vector<double> lit_lengths(const LitPoints& lit, const std::vector<double>& lengths, const PointAt& point) {
+  // Marks of one line: dark ends, then steps from the end inwards. For a lit ring, the outer edge counts.
+  constexpr int steps = 16;
+  std::vector<double> low(lengths.size(), 0), high = lengths;
+  std::vector<std::size_t> open;
+  const auto test = [&](const auto& length) {
+    std::vector<FilmPoint> points;
+    for (const std::size_t line : open) points.push_back(point(line, length(line)));
+    return lit(points);
+  };
+  for (std::size_t line = 0; line < lengths.size(); ++line) open.push_back(line);
+  std::vector<std::size_t> dark;
+  const auto bright_ends = test([&](std::size_t line) { return high[line]; });
+  for (const std::size_t line : open) {
+    if (!bright_ends[line]) dark.push_back(line);
+  }
+  std::vector<std::size_t> edges;
+  for (int i = steps - 1; i >= 0; --i) {
+    open = dark;
+    dark.clear();
+    if (open.empty()) break;
+    const auto length = [&](std::size_t line) { return lengths[line] * i / steps; };
+    const auto bright = test(length);
+    for (std::size_t j = 0; j < open.size(); ++j) {
+      (bright[j] ? low : high)[open[j]] = length(open[j]);
+      (bright[j] ? edges : dark).push_back(open[j]);
+    }
+  }
+  for (open = edges; !open.empty();) {
+    const auto middle = [&](std::size_t line) { return (low[line] + high[line]) / 2; };
+    const auto bright = test(middle);
+    for (std::size_t j = 0; j < open.size(); ++j) (bright[j] ? low : high)[open[j]] = middle(open[j]);
+    constexpr double relative_tolerance = 1e-4;
+    std::erase_if(open, [&](std::size_t line) { return high[line] - low[line] <= relative_tolerance * high[line]; });
+  }
+  return high;
+}
+
+/// Grid from the axis to the last lit point.
+FilmGrid lit_radial_grid(const LitPoints& lit, double film_radius, std::size_t strips) {
+  const auto on_y = [](std::size_t, double y) { return FilmPoint{0, y}; };
+  const double reach = lit_lengths(lit, {film_radius}, on_y)[0];
+  return radial_grid(reach > 0 ? reach : film_radius, strips);
+}
+
+/// Grid over the lit part of a quadrant.
+FilmGrid quadrant_grid(const LitPoints& lit, double film_radius) {
+  FilmGrid grid = lit_radial_grid(lit, film_radius, grid_steps);
+  grid.columns = grid_steps;
+  // Half widths of the lit area, at half steps of the rows.
+  constexpr std::size_t half_steps = 2 * grid_steps;
+  const auto y_of = [&](std::size_t i) { return grid.height * static_cast<double>(i) / half_steps; };
+  std::vector<double> widths;
+  for (std::size_t i = 0; i <= half_steps; ++i) {
+    widths.push_back(std::sqrt(std::max(film_radius * film_radius - y_of(i) * y_of(i), 0.0)));
+  }
+  widths = lit_lengths(lit, widths, [&](std::size_t i, double x) { return FilmPoint{x, y_of(i)}; });
+  // Straight lines between the rows enclose the area, which is convex.
+  for (std::size_t i = 0; i <= grid_steps; ++i) grid.half_widths[i] = widths[2 * i];
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t i = 0; i < grid.rows(); ++i) {
+      double &before = grid.half_widths[i], &after = grid.half_widths[i + 1];
+      // A chord over half of an arc has a quarter of the sagitta of the whole arc.
+      const double chord = (before + after) / 2, overshoot = 1.35 * std::max(widths[2 * i + 1] - chord, 0.0);
+      before += overshoot, after += overshoot;
+    }
+  }
+  return grid;
+}
+
 }  // namespace
+
+FilmPoint FilmGrid::point(const ChartPoint& at) const noexcept {
+  const double row = at[1] * static_cast<double>(rows());
+  const auto i = std::min(static_cast<std::size_t>(row), rows() - 1);
+  const double s = row - static_cast<double>(i);
+  return {((1 - s) * half_widths[i] + s * half_widths[i + 1]) * at[2], height * at[1]};
+}
 
 FilmPolygons film_polygons(const FilmPupils& pupils, double film_radius, PolygonFit fit, int threads) {
   const LitPoints lit = [&](const std::vector<FilmPoint>& points) {
@@ -162,7 +267,7 @@ FilmPolygons film_polygons(const FilmPupils& pupils, double film_radius, Polygon
     return result;
   };
   FilmPolygons result{
-      pupils.of_revolution ? radial_grid(lit, film_radius, film_strips(fit)) : quadrant_grid(lit, film_radius), {}};
+      pupils.of_revolution ? lit_radial_grid(lit, film_radius, film_strips(fit)) : quadrant_grid(lit, film_radius), {}};
   result.by_wavelength.resize(pupils.wavelengths);
   parallel_for(pupils.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
     result.by_wavelength[w] = node_polygons(film_chart(pupils, result.grid, fit, w), fit);
@@ -191,30 +296,15 @@ FilmPolygons traced_polygons(const Lens& lens, const TwoPlanes& space, double fi
   return film_polygons(pupils, film_radius, fit, threads);
 }
 
-std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius) {
-  constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
-  std::vector<PupilPolygon> polygons;
-  for (std::size_t i = 0; i <= strips; ++i) {
-    const double height = film_radius * static_cast<double>(i) / strips;
-    // The overlap ends where the first of the discs ends.
-    double low = -std::numeric_limits<double>::infinity(), high = -low;
-    for (const PupilDisc& disc : discs) {
-      low = std::max(low, disc.shift * height - disc.radius);
-      high = std::min(high, disc.shift * height + disc.radius);
+FilmPolygons disc_polygons(std::span<const std::vector<PupilDisc>> discs, double film_radius) {
+  FilmPolygons result{radial_grid(film_radius, film_strips(PolygonFit::equal_area)), {}};
+  for (const std::vector<PupilDisc>& own : discs) {
+    std::vector<PupilPolygon>& polygons = result.by_wavelength.emplace_back();
+    for (std::size_t i = 0; i <= result.grid.rows(); ++i) {
+      polygons.push_back(overlap_of(own, result.grid.node(i).y));
     }
-    PupilPolygon& overlap = polygons.emplace_back();
-    if (!(low < high)) continue;
-    const Vec2<double> middle{0, (low + high) / 2};
-    // Fraction of d at which a line outwards from the middle leaves the first disc.
-    overlap = polygon_within(middle, (high - low) / 2, [&](const Vec2<double>& d) {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const PupilDisc& disc : discs) {
-        nearest = std::min(nearest, leaves_disc(middle.y - disc.shift * height, disc.radius, d));
-      }
-      return nearest;
-    });
   }
-  return polygons;
+  return result;
 }
 
 PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double radius) {

@@ -6,21 +6,54 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/quadrature.hpp"
-#include "film_grid.hpp"
 #include "film_loops.hpp"
+#include "film_polygons.hpp"
 #include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "pupil_table/film_pupil_table.hpp"
-#include "stop_nodes.hpp"
 
 namespace petzval {
 namespace pupil_table_detail {
+
+/// Intersection of a ray with the stop, in semi-diameters. The ray runs from a film point through a position in the
+/// pupil plane. nullopt if the ray does not reach the stop.
+using StopOf =
+    std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& position, std::size_t wavelength)>;
+
+/// Traces rays, without clipping by apertures. The stop of the lens must have a semi-diameter.
+StopOf traced_stop(const Lens& lens, const TwoPlanes& space);
+
+/// Numbers in both precisions.
+using Numbers = std::tuple<std::vector<double>, std::vector<float>>;
+inline Numbers in_both(std::vector<double> numbers) {
+  std::vector<float> single(numbers.begin(), numbers.end());
+  return {std::move(numbers), std::move(single)};
+}
+template <class R>
+const R* numbers_in(const Numbers& numbers) noexcept {
+  return std::get<std::vector<R>>(numbers).data();
+}
+
+/// The stop behind the pupils of a grid: owns the numbers of GridStop.
+struct StopNodes {
+  iris_detail::IrisShape shape;
+  StopOf stop_of;
+  Numbers numbers;  // [wavelength][node] StopLayout
+
+  template <class R>
+  GridStop<R> borrowed() const noexcept {
+    return {numbers_in<R>(numbers), shape.sectors<R>(), static_cast<R>(shape.area())};
+  }
+};
 
 /// The mean of value(u, v) over the unit square of samples.
 template <class Value>
@@ -45,61 +78,51 @@ inline double solid_angle_at(const TwoPlanes& space, const FilmPoint& film, doub
 struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
-  std::size_t wavelengths = 0, primary = 0;
-  lens_detail::CompiledWavelengths compiled;             // for wavelengths in nm
-  std::optional<pupil_table_detail::IrisImages> images;  // replaces the polygons if set
-  int dimensions = 1;                                    // number of grid dimensions
-  double reach = 0;                   // distance of the farthest film point of the grid from the axis
-  std::size_t rows = 0, columns = 1;  // of cells
-  double height = 0;                  // y of the last row, mm
-  std::vector<double> half_widths;    // FilmGrid::half_widths
-  bool obscured = false, enclosing = false;
-  std::vector<double> numbers;  // [wavelength][node] NodeLayout
-  std::vector<float> numbers_single, half_widths_single;
-  std::shared_ptr<const pupil_table_detail::StopNodes> stop;  // null for a round or unknown stop
-  std::shared_ptr<const Data> unclipped;                      // the unclipped pupils; null if there is no rim
+  std::size_t primary = 0;
+  lens_detail::CompiledWavelengths compiled;                    // for wavelengths in nm
+  bool enclosing = false;                                       // as in FilmPupilTable::enclosing()
+  std::size_t wavelengths = 0;                                  // from here on: the pupils
+  std::optional<pupil_table_detail::IrisImages> images{};       // replaces the polygons if set
+  pupil_table_detail::FilmGrid points{};                        // whose polygons are stored
+  bool obscured = false;                                        // true if at least one polygon is
+  pupil_table_detail::Numbers numbers{}, half_widths{};         // [wavelength][node] NodeLayout; FilmGrid::half_widths
+  std::shared_ptr<const pupil_table_detail::StopNodes> stop{};  // null for a round or unknown stop
+  std::shared_ptr<const Data> unclipped{};                      // the unclipped pupils; null if there is no rim
 
-  /// A table with the same film, planes and wavelengths, but without pupils.
-  std::shared_ptr<Data> without_pupils() const;
-  /// Sets the grid of a lens with two sections.
-  void set(const pupil_table_detail::FilmGrid& grid);
-  /// Adds a wavelength with its polygons at the nodes.
-  void add(const std::vector<pupil_table_detail::PupilPolygon>& polygons);
+  /// A table with the same film, planes and wavelengths, but with other pupils.
+  FilmPupilTable with(const pupil_table_detail::FilmPolygons& pupils) const { return FilmPupilTable(filled(pupils)); }
+  std::shared_ptr<Data> filled(const pupil_table_detail::FilmPolygons& pupils) const;
 
   /// The same pupils with the stop of an iris.
   FilmPupilTable with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of, int threads = 1) const;
 
-  std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
-  FilmPoint node_point(std::size_t node) const noexcept;
-  /// The polygon at a node as passed to add().
-  pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;
-
-  /// Rows per mm. 0 for a film smaller than 1e-30 mm, so that the result is finite in float.
-  double rows_per_mm() const noexcept {
-    constexpr double smallest = 1e-30;
-    return height > smallest ? static_cast<double>(rows) / height : 0;
+  /// True if the polygons are those of a lens of revolution.
+  bool of_revolution() const noexcept { return points.columns == 0; }
+  /// Distance of the farthest film point of the grid from the axis.
+  double reach() const noexcept { return images || !of_revolution() ? film_radius : points.height; }
+  std::size_t nodes() const noexcept { return points.nodes().size(); }
+  /// The polygon at a node.
+  pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept {
+    const double* const first = pupil_table_detail::numbers_in<double>(numbers);
+    return pupil_table_detail::PupilPolygon::of(first +
+                                                (wavelength * nodes() + node) * pupil_table_detail::NodeLayout::size);
   }
+
   template <class Chart, class R>
   pupil_table_detail::PupilGrid<Chart, R> grid() const noexcept {
-    constexpr bool single = sizeof(R) == sizeof(float);
-    const auto of = [](const std::vector<float>& in_float, const std::vector<double>& in_double) {
-      if constexpr (single) {
-        return in_float.data();
-      } else {
-        return in_double.data();
-      }
-    };
     const auto count = [](std::size_t n) { return static_cast<std::int32_t>(n); };
     pupil_table_detail::PupilGrid<Chart, R> result;
-    result.chart.rows = count(rows);
+    result.chart.rows = count(points.rows());
     // Includes corner points of the film after rounding.
-    result.chart.reach = static_cast<R>(reach * (1 + 1e-6));
-    result.chart.rows_per_mm = static_cast<R>(rows_per_mm());
+    result.chart.reach = static_cast<R>(reach() * (1 + 1e-6));
+    constexpr double smallest = 1e-30;  // mm; with a smaller film, rows per mm would be infinite in float
+    const double height = points.height;
+    result.chart.rows_per_mm = height > smallest ? static_cast<R>(static_cast<double>(points.rows()) / height) : R(0);
     if constexpr (requires { result.chart.columns; }) {
-      result.chart.columns = count(columns);
-      result.chart.half_widths = of(half_widths_single, half_widths);
+      result.chart.columns = count(points.columns);
+      result.chart.half_widths = pupil_table_detail::numbers_in<R>(half_widths);
     }
-    result.nodes = of(numbers_single, numbers);
+    result.nodes = pupil_table_detail::numbers_in<R>(numbers);
     result.wavelengths = count(wavelengths), result.primary = count(primary);
     result.obscured = obscured;
     if (stop) result.stop = stop->borrowed<R>();
@@ -109,7 +132,7 @@ struct FilmPupilTable::Data {
   template <class R, class Body>
   auto with_grid(const Body& body) const {
     using namespace pupil_table_detail;
-    return dimensions == 1 ? body(grid<FilmRadius<R>, R>()) : body(grid<FilmQuadrant<R>, R>());
+    return of_revolution() ? body(grid<FilmRadius<R>, R>()) : body(grid<FilmQuadrant<R>, R>());
   }
 
   /// Index of the pupils for a wavelength; `wavelengths` if the wavelength is not covered.
@@ -122,31 +145,32 @@ struct FilmPupilTable::Data {
     const std::size_t found = position(at);
     return found < wavelengths ? static_cast<std::int32_t>(found) : -1;
   }
-  /// Calls body(table, begin, count, wavelengths) for batches of the N rays: with the images, or with the grid and
-  /// positions of wavelengths.
-  template <class R, class Body>
-  void with_table(std::size_t count, const RayWavelengths& given, const Body& body) const noexcept {
+  /// Runs a loop over N rays: over the images, or over the grid with positions of wavelengths.
+  /// @param loop function; loop(loops) selects one of FilmLoopsOf
+  template <class R, std::size_t outputs, class Loop>
+  void run(std::size_t count, const std::array<const R*, 4>& lines, const RayWavelengths& given,
+           const std::array<R*, outputs>& to, const Loop& loop) const noexcept {
+    const pupil_table_detail::FilmLoops& loops = pupil_table_detail::film_loops();
+    const auto part = [&](const auto& table, std::size_t begin, std::size_t n, const RayWavelengths& known) {
+      const R* const from[] = {lines[0] + begin, lines[1] + begin, lines[2] + begin, lines[3] + begin};
+      R* own[outputs];
+      for (std::size_t k = 0; k < outputs; ++k) own[k] = to[k] + begin;
+      const auto function = loop(loops.of<std::decay_t<decltype(table)>>());
+      if (function) function(table, n, from, known, own);
+    };
     if (images) {
-      body(images->table<R>(given.all), 0, count, given);
+      part(images->table<R>(given.all), 0, count, given);
       return;
     }
     with_grid<R>([&](const auto& grid) {
-      if (!given.in_nm()) {
-        body(grid, 0, count, given);
-        return;
-      }
-      if (!given.each_nm) {
-        body(grid, 0, count, RayWavelengths{position(given.all)});
-        return;
-      }
       constexpr std::size_t block = 256;
       std::array<std::uint16_t, block> positions;
-      for (std::size_t begin = 0; begin < count; begin += block) {
+      for (std::size_t begin = 0; given.each_nm && begin < count; begin += block) {
         const std::size_t n = std::min(block, count - begin);
-        pupil_table_detail::film_loops().find_nearest(compiled.nearest_position(), n, given.each_nm + begin,
-                                                      positions.data());
-        body(grid, begin, n, RayWavelengths{.each = positions.data()});
+        loops.find_nearest(compiled.nearest_position(), n, given.each_nm + begin, positions.data());
+        part(grid, begin, n, RayWavelengths{.each = positions.data()});
       }
+      if (!given.each_nm) part(grid, 0, count, given.in_nm() ? RayWavelengths{position(given.all)} : given);
     });
   }
 };

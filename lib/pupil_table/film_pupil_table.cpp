@@ -35,10 +35,8 @@ struct PolygonAt {
     return grid.obscured ? sector_of<true, double>(grid, cell, k) : sector_of<false, double>(grid, cell, k);
   }
   double area() const noexcept {
-    double sum = 0;
-    constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
-    for (std::int32_t k = 0; cell.known && k < corners; ++k) sum += std::max(sector(k).area(), 0.0);
-    return sum;
+    const auto sectors = [this](std::size_t k) { return sector(static_cast<std::int32_t>(k)); };
+    return cell.known ? PolygonSampler(sectors).area() : 0;
   }
   bool samples_iris() const noexcept {
     return grid.stop.nodes && pupil_table_detail::samples_iris<double>(grid, cell) > 0;
@@ -90,7 +88,7 @@ FilmPupilTable::Derivatives motion_of_middle(const Grid& grid, const FilmPoint& 
 
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
-double FilmPupilTable::lit_radius() const noexcept { return data_->images ? film_radius() : data_->reach; }
+double FilmPupilTable::lit_radius() const noexcept { return data_->reach(); }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
 bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
@@ -101,18 +99,18 @@ bool FilmPupilTable::knows_stop() const noexcept { return data_->stop != nullptr
 FilmPupilArrays FilmPupilTable::arrays() const {
   if (data_->images) throw Error("pupils: arrays: the pupils have a closed form; must be polygons");
   FilmPupilArrays result;
-  result.dimensions = data_->dimensions;
-  result.rows = data_->rows, result.columns = data_->columns;
-  result.half_widths = data_->half_widths_single;
+  result.dimensions = data_->of_revolution() ? 1 : 2;
+  result.rows = data_->points.rows(), result.columns = std::max<std::size_t>(data_->points.columns, 1);
+  if (!data_->of_revolution()) result.half_widths = std::get<1>(data_->half_widths);
   result.node_size = static_cast<std::size_t>(data_->obscured ? NodeLayout::size : NodeLayout::obscured);
-  const std::vector<float>& numbers = data_->numbers_single;
+  const std::vector<float>& numbers = std::get<1>(data_->numbers);
   for (auto node = numbers.begin(); node != numbers.end(); node += NodeLayout::size) {
     result.nodes.insert(result.nodes.end(), node, node + static_cast<std::ptrdiff_t>(result.node_size));
   }
   data_->with_grid<float>([&](const auto& grid) {
     result.reach = grid.chart.reach, result.rows_per_mm = grid.chart.rows_per_mm;
     if (!data_->stop) return;
-    result.stops = data_->stop->numbers_single;
+    result.stops = std::get<1>(data_->stop->numbers);
     result.stop_size = StopLayout<std::decay_t<decltype(grid.chart)>::map_terms>::size;
     const auto& iris = grid.stop.iris;
     result.iris_area = grid.stop.area;
@@ -143,12 +141,8 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
 template <class T>
 void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
                             const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
-  data_->with_table<T>(count, wavelengths,
-                       [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
-                         const T* const lines[] = {film_x + o, film_y + o, u + o, v + o};
-                         T* const to[] = {x + o, y + o, areas + o};
-                         film_loops().of<std::decay_t<decltype(table)>>().sample(table, n, lines, known, to);
-                       });
+  data_->run<T>(count, {film_x, film_y, u, v}, wavelengths, std::array{x, y, areas},
+                [](const auto& loops) { return loops.sample; });
 }
 
 double FilmPupilTable::polygon_area(const FilmPoint& film, Wavelength wavelength) const noexcept {
@@ -212,12 +206,8 @@ void FilmPupilTable::sample_areas(std::size_t count, const TwoPlaneRays<const T>
         sample_area({lines.film_x[0], lines.film_y[0]}, lines.pupil_x[0], lines.pupil_y[0], wavelengths.at(0)));
     return;
   }
-  data_->with_table<T>(
-      count, wavelengths, [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
-        const T* const from[] = {lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o};
-        T* const to[] = {areas + o};
-        film_loops().of<std::decay_t<decltype(table)>>().areas(table, n, from, known, to);
-      });
+  data_->run<T>(count, {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y}, wavelengths, std::array{areas},
+                [](const auto& loops) { return loops.areas; });
 }
 
 template <class T>
@@ -235,13 +225,8 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
 template <class T>
 void FilmPupilTable::stop_points(std::size_t count, const TwoPlaneRays<const T>& lines,
                                  const RayWavelengths& wavelengths, T* x, T* y) const noexcept {
-  data_->with_table<T>(
-      count, wavelengths, [&](const auto& table, std::size_t o, std::size_t n, const RayWavelengths& known) {
-        const T* const from[] = {lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o};
-        T* const to[] = {x + o, y + o};
-        const auto& loops = film_loops().of<std::decay_t<decltype(table)>>();
-        if (loops.stop_points) loops.stop_points(table, n, from, known, to);
-      });
+  data_->run<T>(count, {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y}, wavelengths, std::array{x, y},
+                [](const auto& loops) { return loops.stop_points; });
 }
 
 double FilmPupilTable::sampled_iris_scale(const FilmPoint& film, Wavelength wavelength) const noexcept {

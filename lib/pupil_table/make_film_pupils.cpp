@@ -26,10 +26,10 @@ using namespace pupil_table_detail;
 void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double target_solid_angle) {
   // The solid angle is nearly proportional to the squared scale.
   for (int round = 0; round < 3; ++round) {
-    const PolygonSampler sampler(polygon);
+    const PolygonSampler sampler([&](std::size_t k) { return polygon.sector(k); });
     const auto solid_angle = [&](double u, double v) {
-      const Vec2<double> position = sampler(u, v);
-      return solid_angle_at(space, film, position.x, position.y);
+      const Point<double> p = sampler(u, v);
+      return solid_angle_at(space, film, polygon.middle.x + p.x, polygon.middle.y + p.y);
     };
     const double own =
         sampler.area() * (space.depth() * space.depth()) * pupil_table_detail::mean_over_samples(16, solid_angle);
@@ -125,20 +125,11 @@ void check_discs(std::span<const std::vector<PupilDisc>> discs) {
 FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool enclosing, int threads) {
   const PolygonFit fit = enclosing ? PolygonFit::enclosing : PolygonFit::equal_area;
   check_film_radius(lens.name(), film_radius);
-  auto data = std::make_shared<Data>();
-  data->space = two_planes(lens);
-  data->film_radius = film_radius;
-  data->primary = lens.primary_wavelength();
-  data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
-  data->enclosing = enclosing;
-  const Lens round = with_iris(lens, {});
-  FilmPolygons pupils = traced_polygons(round, data->space, film_radius, fit, threads);
-  if (enclosing) expand_to_neighbours(data->compiled, pupils.by_wavelength);
-  const bool of_revolution = round.rotationally_symmetric();
-  if (!of_revolution) data->set(pupils.grid);
-  if (of_revolution) data->reach = pupils.grid.height;
-  for (const auto& own : pupils.by_wavelength) data->add(own);
-  const FilmPupilTable table(std::move(data));
+  const Data data{two_planes(lens), film_radius, lens.primary_wavelength(),
+                  lens_detail::CompiledWavelengths(lens.wavelengths_nm()), enclosing};
+  FilmPolygons pupils = traced_polygons(with_iris(lens, {}), data.space, film_radius, fit, threads);
+  if (enclosing) expand_to_neighbours(data.compiled, pupils.by_wavelength);
+  const FilmPupilTable table = data.with(pupils);
   return lens.iris().round() ? table : table.with_stop(lens, threads);
 }
 
@@ -163,13 +154,8 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
                                         std::span<const double> wavelengths_nm) {
   check_table(space, film_radius, discs.size(), primary_wavelength, wavelengths_nm);
   check_discs(discs);
-  auto data = std::make_shared<Data>();
-  data->primary = primary_wavelength;
-  data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
-  data->space = space;
-  data->film_radius = data->reach = film_radius;
-  for (const std::vector<PupilDisc>& set : discs) data->add(disc_polygons(set, film_radius));
-  return FilmPupilTable(std::move(data));
+  const Data data{space, film_radius, primary_wavelength, lens_detail::CompiledWavelengths(wavelengths_nm)};
+  return data.with(disc_polygons(discs, film_radius));
 }
 
 FilmPupilTable FilmPupilTable::with_round_stop() const {
@@ -186,22 +172,19 @@ FilmPupilTable FilmPupilTable::with_discs(std::span<const std::vector<PupilDisc>
                 std::to_string(wavelengths()));
   }
   check_discs(discs);
-  auto data = data_->without_pupils();
-  constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
+  FilmPolygons pupils = disc_polygons(discs, lit_radius());
   for (std::size_t w = 0; w < discs.size(); ++w) {
-    std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
-    for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / strips};
-      scale_to_light(polygons[i], space(), film, projected_solid_angle(film, w));
+    for (std::size_t i = 0; i < pupils.by_wavelength[w].size(); ++i) {
+      const FilmPoint film = pupils.grid.node(i);
+      scale_to_light(pupils.by_wavelength[w][i], space(), film, projected_solid_angle(film, w));
     }
-    data->add(polygons);
   }
-  return FilmPupilTable(std::move(data));
+  return data_->with(pupils);
 }
 
 FilmPupilTable FilmPupilTable::clipped_by_rim(const PupilRim& rim) const {
   const auto& images = data_->images;
-  if (data_->dimensions == 2 || (images && !images->of_revolution()) || data_->obscured) {
+  if (!data_->of_revolution() || (images && !images->of_revolution()) || data_->obscured) {
     throw Error(
         "pupils: the lens has cylinders or a central obscuration; must be a lens of revolution without "
         "obscurations if a rim clips its pupils");
@@ -215,23 +198,20 @@ FilmPupilTable FilmPupilTable::clipped_by_rim(const PupilRim& rim) const {
     throw Error("pupils: the rim moves by " + to_text(std::abs(rim.shift_per_mm) * lit_radius()) +
                 " radii over the film; must be at most " + to_text(farthest));
   }
-  auto data = data_->without_pupils();
-  data->unclipped = data_;
+  FilmPolygons pupils{data_->points, {}};
+  std::vector<std::vector<PupilDisc>> discs;
   for (std::size_t w = 0; w < wavelengths(); ++w) {
     const PupilDisc pupil =
-        images ? images->disc(w)
-               : disc_around(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(data_->rows));
+        images ? images->disc(w) : disc_around(data_->node(w, 0), data_->node(w, 1), data_->points.node(1).y);
     const PupilDisc disc{pupil.shift - rim.shift_per_mm * pupil.radius, rim.ratio * pupil.radius};
-    std::vector<PupilPolygon> polygons;
-    if (images) {
-      polygons = disc_polygons(std::array{pupil, disc}, lit_radius());
-    } else {
-      for (std::size_t i = 0; i < data_->nodes(); ++i) {
-        polygons.push_back(clipped_by_disc(data_->node(w, i), disc.shift * data_->node_point(i).y, disc.radius));
-      }
+    discs.push_back({pupil, disc});
+    std::vector<PupilPolygon>& polygons = pupils.by_wavelength.emplace_back();
+    for (std::size_t i = 0; !images && i < data_->nodes(); ++i) {
+      polygons.push_back(clipped_by_disc(data_->node(w, i), disc.shift * data_->points.node(i).y, disc.radius));
     }
-    data->add(polygons);
   }
+  auto data = data_->filled(images ? disc_polygons(discs, lit_radius()) : pupils);
+  data->unclipped = data_;
   if (const auto& stop = data_->stop) return data->with_stop(stop->shape.iris(), stop->stop_of);
   if (!images || images->round()) return FilmPupilTable(std::move(data));
   const StopOf stop_of = [own = *images](const FilmPoint& film, const Vec2<double>& position,
@@ -254,22 +234,17 @@ FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris,
     check_outline(w, shift.x, radius.x);
     check_outline(w, shift.y, radius.y);
   }
-  auto data = std::make_shared<Data>();
-  data->space = space;
-  data->film_radius = film_radius;
-  data->wavelengths = images.size();
-  data->primary = primary_wavelength;
-  data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
-  data->images.emplace(iris, images, film_radius, primary_wavelength, data->compiled);
+  const lens_detail::CompiledWavelengths compiled(wavelengths_nm);
+  auto data = std::make_shared<Data>(Data{space, film_radius, primary_wavelength, compiled, false, images.size()});
+  data->images.emplace(iris, images, film_radius, primary_wavelength, compiled);
   return FilmPupilTable(std::move(data));
 }
 
 FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads) const {
   check_film_radius("tilted film", tilt.radius);
   if (threads < 1) throw Error("tilted film: threads = " + std::to_string(threads) + "; must be at least 1");
-  auto data = std::make_shared<Data>();
   if (data_->images && tilt.travel == 0) {
-    *data = *data_;
+    auto data = std::make_shared<Data>(*data_);
     data->film_radius = tilt.radius;
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
@@ -278,16 +253,25 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
   // rays.
   if (data_->stop || (data_->images && !data_->images->round()))
     return with_round_stop().for_tilted_film(tilt, threads);
-  data->space = data_->space;
-  data->primary = data_->primary;
-  data->compiled = data_->compiled;
-  data->film_radius = tilt.radius;
-  const bool of_revolution = data_->images ? data_->images->of_revolution() : data_->dimensions == 1;
-  const FilmPolygons pupils = tilted_polygons(*this, of_revolution, tilt, threads);
-  if (!of_revolution) data->set(pupils.grid);
-  if (of_revolution) data->reach = pupils.grid.height;
-  for (const auto& own : pupils.by_wavelength) data->add(own);
-  return FilmPupilTable(std::move(data));
+  const bool of_revolution = data_->images ? data_->images->of_revolution() : data_->of_revolution();
+  const Data data{space(), tilt.radius, data_->primary, data_->compiled};
+  return data.with(tilted_polygons(*this, of_revolution, tilt, threads));
+}
+
+std::shared_ptr<FilmPupilTable::Data> FilmPupilTable::Data::filled(const FilmPolygons& pupils) const {
+  auto data = std::make_shared<Data>(Data{space, film_radius, primary, compiled, enclosing});
+  data->wavelengths = pupils.by_wavelength.size();
+  data->points = pupils.grid;
+  std::vector<double> of_nodes;
+  for (const auto& own : pupils.by_wavelength) {
+    for (const PupilPolygon& polygon : own) {
+      polygon.append_to(of_nodes);
+      data->obscured = data->obscured || polygon.is_obscured();
+    }
+  }
+  data->numbers = in_both(std::move(of_nodes));
+  data->half_widths = in_both(pupils.grid.half_widths);
+  return data;
 }
 
 }  // namespace petzval

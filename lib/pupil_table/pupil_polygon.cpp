@@ -116,25 +116,40 @@ struct Obscured {
     from = std::max(from, first + std::max(first - expected.from, 0.0));
     to = std::min(to, last - std::max(expected.to - last, 0.0));
   }
-  void give(PupilPolygon& polygon, std::size_t k) const noexcept {
-    polygon.obscured_from[k] = from < to ? from : 0;
-    polygon.obscured[k] = from < to ? to - from : 0;
-  }
 };
 
-/// Scales the corners and keeps the obscurations in place.
-void stretch(PupilPolygon& polygon, const std::array<double, polygon_corners>& scale) {
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    const double larger = std::max(scale[k], scale[(k + 1) % polygon_corners]);
-    const double smaller = std::min(scale[k], scale[(k + 1) % polygon_corners]);
-    // If the corners scale differently, keep the interval obscured at both.
-    const double from = polygon.obscured_from[k] / (smaller * smaller);
-    const double to = (polygon.obscured_from[k] + polygon.obscured[k]) / (larger * larger);
-    polygon.obscured_from[k] = from < to ? from : 0;
-    polygon.obscured[k] = std::max(to - from, 0.0);
-  }
-  for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] *= scale[k];
+/// Obscuration of a sector, as an interval.
+Obscured obscured_in(const Sector<double>& sector) noexcept {
+  return {sector.obscured_from, sector.obscured_from + sector.obscured};
 }
+
+/// New scales of corners and new obscurations of a polygon.
+struct Expansion {
+  std::array<double, polygon_corners> scale;
+  std::array<Obscured, polygon_corners> obscured{};
+
+  explicit Expansion(double least) noexcept { scale.fill(least); }
+  Expansion(double least, const PupilPolygon& polygon) noexcept : Expansion(least) {
+    for (std::size_t k = 0; k < polygon_corners; ++k) obscured[k] = obscured_in(polygon.sector(k));
+  }
+  /// Scales both corners of a sector by at least `target`.
+  void scale_to(std::size_t sector, double target) noexcept {
+    for (const std::size_t k : {sector, (sector + 1) % polygon_corners}) scale[k] = std::max(scale[k], target);
+  }
+  /// Scales the corners and keeps the obscurations in place.
+  void apply(PupilPolygon& polygon) const noexcept {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      const double next = scale[(k + 1) % polygon_corners];
+      const double larger = std::max(scale[k], next), smaller = std::min(scale[k], next);
+      // If the corners scale differently, keep the interval obscured at both.
+      const auto [begin, end] = obscured[k];
+      const double from = begin / (smaller * smaller), to = end / (larger * larger);
+      polygon.obscured_from[k] = from < to ? from : 0;
+      polygon.obscured[k] = std::max(to - from, 0.0);
+      polygon.corners[k] *= scale[k];
+    }
+  }
+};
 
 /// Makes outer and obscured areas equal to the areas of the region: the outer area by scaling the corners, the obscured
 /// area by the widths in the sectors.
@@ -189,7 +204,9 @@ bool PupilPolygon::is_obscured() const noexcept {
   return std::any_of(obscured.begin(), obscured.end(), [](double width) { return width > 0; });
 }
 
-double PupilPolygon::area() const noexcept { return PolygonSampler(*this).area(); }
+double PupilPolygon::area() const noexcept {
+  return PolygonSampler([this](std::size_t k) { return sector(k); }).area();
+}
 
 void PupilPolygon::widen(double by) noexcept {
   for (auto& corner : corners) corner = {by * corner[0], by * corner[1]};
@@ -197,23 +214,6 @@ void PupilPolygon::widen(double by) noexcept {
     const double to = (obscured_from[k] + obscured[k]) / (by * by * by * by);
     obscured[k] = std::max(to - obscured_from[k], 0.0);
   }
-}
-
-PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(polygon) {
-  before_[0] = 0;
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    before_[k + 1] = before_[k] + std::max(polygon.sector(k).area(), 0.0);
-  }
-}
-
-Vec2<double> PolygonSampler::operator()(double u, double v) const noexcept {
-  const double area_before_sample = std::clamp(u, 0.0, 1.0) * area();
-  const std::size_t k = sector_of_area(area_before_sample, [this](std::size_t i) { return before_[i]; });
-  const double own = before_[k + 1] - before_[k];
-  const double along = own > 0 ? std::clamp((area_before_sample - before_[k]) / own, 0.0, 1.0) : 0;
-  const Sector<double> sector = polygon_.sector(k);
-  const Position p = sector.at(std::sqrt(sector.squared_radius(std::clamp(v, 0.0, 1.0))), along);
-  return {polygon_.middle[0] + p.x, polygon_.middle[1] + p.y};
 }
 
 PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
@@ -258,26 +258,19 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
   }
   segment[polygon_corners] = n - 1;
 
-  std::array<double, polygon_corners> scale;
-  scale.fill(1);
+  Expansion expansion(1);
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     const Sector<double> sector = polygon.sector(k);
-    const std::size_t next = (k + 1) % polygon_corners;
-    Obscured obscured;
     for (std::size_t i = segment[k]; i <= segment[k + 1] + 1; ++i) {
-      if (i > segment[k] && i <= segment[k + 1]) {
-        const double target = scale_for(sector, point(i));
-        scale[k] = std::max(scale[k], target);
-        scale[next] = std::max(scale[next], target);
+      if (fit == PolygonFit::enclosing && i > segment[k] && i <= segment[k + 1]) {
+        expansion.scale_to(k, scale_for(sector, point(i)));
       }
       const double begin = edge.obscured_from[i % n], end = edge.obscured_to[i % n];
-      obscured.keep(sector, begin == 0, begin * point(i), end * point(i), {1, 0});
+      expansion.obscured[k].keep(sector, begin == 0, begin * point(i), end * point(i), {1, 0});
     }
-    obscured.give(polygon, k);
   }
-  if (fit == PolygonFit::enclosing) {
-    stretch(polygon, scale);
-  } else {
+  expansion.apply(polygon);
+  if (fit == PolygonFit::equal_area) {
     match_area(polygon, region, edge.area);
     // A disconnected pupil does not fit one outline with one obscuration: keep its area rather than its shape.
     const double lit = region.area(), area = polygon.area();
@@ -307,15 +300,8 @@ PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonW
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks) {
   // Margin for boundaries between the tested points, and a constant margin.
   constexpr double overshoot_factor = 1.4, min_expansion = 2e-4;
-  std::vector<std::array<double, polygon_corners>> scales(polygons.size());
-  std::vector<std::array<Obscured, polygon_corners>> obscured(polygons.size());
-  for (auto& scale : scales) scale.fill(1 + min_expansion);
-  for (std::size_t p = 0; p < polygons.size(); ++p) {
-    for (std::size_t k = 0; k < polygon_corners; ++k) {
-      const double from = polygons[p].obscured_from[k];
-      obscured[p][k] = {from, from + polygons[p].obscured[k]};
-    }
-  }
+  std::vector<Expansion> expansions;
+  for (const PupilPolygon& polygon : polygons) expansions.emplace_back(1 + min_expansion, polygon);
   for (const auto& [region, at] : checks) {
     if (!region || region->empty()) continue;
     const PupilPolygon polygon = interpolated(polygons, at);
@@ -330,22 +316,18 @@ void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const Interpola
       if (facing == polygon_corners) continue;
       k = facing;
       const Sector<double> sector = polygon.sector(k);
-      const Obscured expected{sector.obscured_from, sector.obscured_from + sector.obscured};
       const double relative = sector.relative_radius(q),
                    target = relative > 1 ? 1 + overshoot_factor * (relative - 1) + min_expansion : 1;
       for (std::size_t j = 0; j < at.polygons.size(); ++j) {
         if (at.weights[j] == 0) continue;
-        auto& scale = scales[at.polygons[j]];
-        for (const std::size_t corner : {k, (k + 1) % polygon_corners}) scale[corner] = std::max(scale[corner], target);
-        obscured[at.polygons[j]][k].keep(sector, edge.obscured_from[i] == 0, along(edge.obscured_from[i]),
-                                         along(edge.obscured_to[i]), expected);
+        Expansion& expansion = expansions[at.polygons[j]];
+        expansion.scale_to(k, target);
+        expansion.obscured[k].keep(sector, edge.obscured_from[i] == 0, along(edge.obscured_from[i]),
+                                   along(edge.obscured_to[i]), obscured_in(sector));
       }
     }
   }
-  for (std::size_t p = 0; p < polygons.size(); ++p) {
-    for (std::size_t k = 0; k < polygon_corners; ++k) obscured[p][k].give(polygons[p], k);
-    stretch(polygons[p], scales[p]);
-  }
+  for (std::size_t p = 0; p < polygons.size(); ++p) expansions[p].apply(polygons[p]);
 }
 
 void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
@@ -358,12 +340,7 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
   const PupilPolygon between = interpolated(both, {{0, 1, 0, 0}, {1 - middle, middle, 0, 0}});
   const Position offset = position_of(between.middle) - position_of(polygon.middle);
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
-  std::array<double, polygon_corners> scale;
-  scale.fill(1);
-  std::array<Obscured, polygon_corners> obscured;
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    obscured[k] = {polygon.obscured_from[k], polygon.obscured_from[k] + polygon.obscured[k]};
-  }
+  Expansion expansion(1, polygon);
   const bool ring = polygon.is_obscured();
   std::size_t facing = 0;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
@@ -374,20 +351,16 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
       if (found == polygon_corners) continue;
       facing = found;
       const Sector<double> sector = polygon.sector(facing);
-      for (const std::size_t j : {facing, (facing + 1) % polygon_corners}) {
-        scale[j] = std::max(scale[j], scale_for(sector, q));
-      }
+      expansion.scale_to(facing, scale_for(sector, q));
       if (!ring) continue;
-      const double from = edge.obscured_from, to = from + edge.obscured;
-      const Obscured expected{sector.obscured_from, sector.obscured_from + sector.obscured};
+      const auto [from, to] = obscured_in(edge);
       for (const std::size_t j : {facing, (facing + polygon_corners - 1) % polygon_corners}) {
-        obscured[j].keep(polygon.sector(j), from == 0, std::sqrt(from) * corner + offset,
-                         std::sqrt(to) * corner + offset, expected);
+        expansion.obscured[j].keep(polygon.sector(j), from == 0, std::sqrt(from) * corner + offset,
+                                   std::sqrt(to) * corner + offset, obscured_in(sector));
       }
     }
   }
-  for (std::size_t k = 0; k < polygon_corners; ++k) obscured[k].give(polygon, k);
-  stretch(polygon, scale);
+  expansion.apply(polygon);
 }
 
 }  // namespace petzval::pupil_table_detail

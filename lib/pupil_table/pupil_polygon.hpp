@@ -35,22 +35,6 @@ struct PupilPolygon {
   void widen(double by) noexcept;
 };
 
-/// Maps uniform numbers to uniform points of a polygon, as PupilSampler does for a PupilBoundary, but with triangles
-/// instead of ring sectors. Keeps a reference to the polygon.
-class PolygonSampler {
- public:
-  explicit PolygonSampler(const PupilPolygon& polygon) noexcept;
-  explicit PolygonSampler(const PupilPolygon&& polygon) = delete;
-  /// Area, mm^2; 0 if there is nothing to sample.
-  double area() const noexcept { return before_[polygon_corners]; }
-  /// The point for u and v in [0, 1] (clamped).
-  Vec2<double> operator()(double u, double v) const noexcept;
-
- private:
-  const PupilPolygon& polygon_;
-  std::array<double, polygon_corners + 1> before_;  // area of all sectors before each sector
-};
-
 enum class PolygonFit {
   enclosing,   ///< contains the region
   equal_area,  ///< has the area of the region

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -98,18 +99,37 @@ struct Sector {
   }
 };
 
-/// Index of the sector that contains a sample, for sectors of nearly equal areas.
-/// @param area area before the sample
-/// @param before function; before(k) is the area before sector k, before(polygon_corners) the area of the polygon
-template <class AreaBefore>
-inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
-  constexpr double last = polygon_corners - 1;
-  const double expected = area / before(polygon_corners) * static_cast<double>(polygon_corners);
-  auto k = expected > 0 ? static_cast<std::size_t>(expected < last ? expected : last) : 0;
-  while (k > 0 && area < before(k)) --k;
-  while (k + 1 < polygon_corners && area >= before(k + 1)) ++k;
-  return k;
-}
+/// Maps uniform numbers to uniform points of a polygon, as PupilSampler does for a PupilBoundary, but with triangles
+/// instead of ring sectors.
+class PolygonSampler {
+ public:
+  /// @param sector function; sector(k) is sector k
+  template <class Sectors>
+  explicit PolygonSampler(const Sectors& sector) noexcept {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      sectors_[k] = sector(k);
+      before_[k + 1] = before_[k] + greater(sectors_[k].area(), 0.0);
+    }
+  }
+  /// Area, mm^2; 0 if there is nothing to sample.
+  double area() const noexcept { return before_[polygon_corners]; }
+  /// The point, relative to the middle, for u and v in [0, 1] (clamped).
+  Point<double> operator()(double u, double v) const noexcept {
+    // Areas of sectors are nearly equal.
+    constexpr double last = polygon_corners - 1;
+    const double area_before = clamped(u) * area(), expected = area_before / area() * (last + 1);
+    auto k = expected > 0 ? static_cast<std::size_t>(lesser(expected, last)) : 0;
+    while (k > 0 && area_before < before_[k]) --k;
+    while (k + 1 < polygon_corners && area_before >= before_[k + 1]) ++k;
+    const double own = before_[k + 1] - before_[k];
+    const double along = own > 0 ? clamped((area_before - before_[k]) / own) : 0;
+    return sectors_[k].at(sqrt(sectors_[k].squared_radius(clamped(v))), along);
+  }
+
+ private:
+  std::array<Sector<double>, polygon_corners> sectors_;
+  std::array<double, polygon_corners + 1> before_{};  // area of all sectors before each sector
+};
 
 /// Index of the sector that faces a position, searched from sector `first` on; polygon_corners if there is no such
 /// sector.

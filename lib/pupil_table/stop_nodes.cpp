@@ -4,12 +4,11 @@
 // them. At film points without vignetting they map samples of the iris to the pupil. At other film points the iris
 // clips the straight lines of the polygon's samples; at the stop, such a line is nearly straight from the stop point of
 // the middle to that of the edge.
-#include "stop_nodes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "core/least_squares.hpp"
@@ -223,71 +222,53 @@ void put_node(std::vector<double>& to, const NodeMap<terms>& map, bool samples_i
   to.insert(to.end(), node.begin(), node.end());
 }
 
-/// The stop at the nodes of one wavelength.
+/// Scale of the iris with which no ray of a cell is missed.
+/// @param points, polygons, maps the nodes of the wavelength
+/// @param cell           the nodes of the cell
 template <int terms>
-class StopOfWavelength {
- public:
-  using Map = NodeMap<terms>;
-  StopOfWavelength(std::span<const FilmPoint> points, std::span<const PupilPolygon> polygons, const StopOf& stop_of,
-                   std::size_t wavelength)
-      : points_(points), polygons_(polygons), stop_of_(stop_of), wavelength_(wavelength) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Map& map = maps.emplace_back(fit_node_map<terms>(stop_of, points[i], polygons[i], wavelength));
-      // A node without a pupil uses the map of the previous node.
-      if (!map.known && i > 0 && terms == 15 && !(polygons[i].area() > 0)) map = maps[i - 1];
-    }
+double scale_in_cell(const StopOf& stop_of, std::span<const FilmPoint> points, std::span<const PupilPolygon> polygons,
+                     std::span<const NodeMap<terms>> maps, std::span<const std::size_t> cell, bool samples_iris,
+                     std::size_t wavelength) {
+  PolygonWeights weights;
+  std::vector<const NodeMap<terms>*> at;
+  FilmPoint middle;
+  const double part = 1 / static_cast<double>(cell.size());
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    weights.polygons[k] = cell[k], weights.weights[k] = part;
+    at.push_back(&maps[cell[k]]);
+    middle.x += part * points[cell[k]].x, middle.y += part * points[cell[k]].y;
   }
-
-  /// Scale of the iris with which no ray of a cell is missed.
-  /// @param cell the nodes of the cell
-  double scale(std::span<const std::size_t> cell, bool samples_iris) const {
-    PolygonWeights weights;
-    std::vector<const Map*> at;
-    FilmPoint middle;
-    const double part = 1 / static_cast<double>(cell.size());
-    for (std::size_t k = 0; k < cell.size(); ++k) {
-      weights.polygons[k] = cell[k], weights.weights[k] = part;
-      at.push_back(&maps[cell[k]]);
-      middle.x += part * points_[cell[k]].x, middle.y += part * points_[cell[k]].y;
-    }
-    double error = error_in_middle(stop_of_, middle, interpolated(polygons_, weights), mean_of<terms>(at), wavelength_);
-    // Fraction of the line error that remains after the second pass of clipping.
-    constexpr double remaining_fraction = 0.1;
-    double of_lines = 0;
-    for (const Map* map : at) {
-      error = std::max(error, map->error);
-      of_lines = std::max(of_lines, samples_iris ? 0 : remaining_fraction * map->line_error);
-    }
-    // Margin for rays between the tested rays; it grows with the error of the map.
-    constexpr double linear_margin = 1.25, quadratic_margin = 100, min_margin = 2e-4;
-    return 1 + (linear_margin + quadratic_margin * error) * error + of_lines + min_margin;
+  double error = error_in_middle(stop_of, middle, interpolated(polygons, weights), mean_of<terms>(at), wavelength);
+  // Fraction of the line error that remains after the second pass of clipping.
+  constexpr double remaining_fraction = 0.1;
+  double of_lines = 0;
+  for (const auto* map : at) {
+    error = std::max(error, map->error);
+    of_lines = std::max(of_lines, samples_iris ? 0 : remaining_fraction * map->line_error);
   }
-
-  std::vector<Map> maps;
-
- private:
-  std::span<const FilmPoint> points_;
-  std::span<const PupilPolygon> polygons_;
-  const StopOf& stop_of_;
-  std::size_t wavelength_;
-};
+  // Margin for rays between the tested rays; it grows with the error of the map.
+  constexpr double linear_margin = 1.25, quadratic_margin = 100, min_margin = 2e-4;
+  return 1 + (linear_margin + quadratic_margin * error) * error + of_lines + min_margin;
+}
 
 /// The numbers of all wavelengths. Data: FilmPupilTable::Data.
 template <int terms, class Data>
 std::vector<double> stop_numbers(const Data& data, const iris_detail::IrisShape& shape, const StopOf& stop_of,
                                  int threads) {
   std::vector<FilmPoint> points;
-  for (std::size_t i = 0; i < data.nodes(); ++i) points.push_back(data.node_point(i));
+  for (std::size_t i = 0; i < data.nodes(); ++i) points.push_back(data.points.node(i));
   std::vector<std::vector<PupilPolygon>> polygons(data.wavelengths);
-  std::vector<std::optional<StopOfWavelength<terms>>> stops(data.wavelengths);
+  std::vector<std::vector<NodeMap<terms>>> maps(data.wavelengths);
   parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
       polygon.obscured_from.fill(0), polygon.obscured.fill(0);
+      auto& map = maps[w].emplace_back(fit_node_map<terms>(stop_of, points[i], polygon, w));
+      // A node without a pupil uses the map of the previous node.
+      if (!map.known && i > 0 && terms == 15 && !(polygon.area() > 0)) map = maps[w][i - 1];
     }
-    stops[w].emplace(points, polygons[w], stop_of, w);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      auto& map = stops[w]->maps[i];
+      auto& map = maps[w][i];
       map.samples_iris = map.known && !data.obscured && whole_iris_within(map, polygons[w][i], shape, data.enclosing);
     }
   });
@@ -295,37 +276,36 @@ std::vector<double> stop_numbers(const Data& data, const iris_detail::IrisShape&
     for (std::size_t r = 0; r + 1 < data.compiled.count(); ++r) {
       const std::size_t w = data.compiled.position(r), next = data.compiled.position(r + 1);
       for (std::size_t i = 0; i < points.size(); ++i) {
-        auto &a = stops[w]->maps[i], &b = stops[next]->maps[i];
+        auto &a = maps[w][i], &b = maps[next][i];
         if (!a.known || !b.known) continue;
         const double change = change_of(a, b, polygons[w][i]);
         a.error += change, b.error += change;
       }
     }
   }
-  const std::size_t across = data.dimensions == 1 ? 1 : data.columns + 1;
+  const std::size_t across = data.points.columns + 1;
   std::vector<std::vector<double>> by_wavelength(data.wavelengths);
   parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
-    const StopOfWavelength<terms>& stop = *stops[w];
     // The scale of a node is the largest scale of the cells that share the node.
     std::vector<double> scales(points.size(), 1);
     std::vector<bool> of_iris(points.size(), false);
-    for (std::size_t row = 0; row < data.rows; ++row) {
-      for (std::size_t column = 0; column < data.columns; ++column) {
+    for (std::size_t row = 0; row < data.points.rows(); ++row) {
+      for (std::size_t column = 0; column < std::max<std::size_t>(data.points.columns, 1); ++column) {
         const std::size_t first = row * across + column;
         std::vector<std::size_t> cell{first, first + 1};
-        if (data.dimensions == 2) cell.insert(cell.end(), {first + across, first + across + 1});
+        if (!data.of_revolution()) cell.insert(cell.end(), {first + across, first + across + 1});
         const auto all = [&](bool NodeMap<terms>::*member) {
-          return std::all_of(cell.begin(), cell.end(), [&](std::size_t i) { return stop.maps[i].*member; });
+          return std::all_of(cell.begin(), cell.end(), [&](std::size_t i) { return maps[w][i].*member; });
         };
         if (!all(&NodeMap<terms>::known)) continue;
         of_iris[first] = all(&NodeMap<terms>::samples_iris);
         if (!data.enclosing) continue;
-        const double scale = stop.scale(cell, of_iris[first]);
+        const double scale = scale_in_cell<terms>(stop_of, points, polygons[w], maps[w], cell, of_iris[first], w);
         for (const std::size_t i : cell) scales[i] = std::max(scales[i], scale);
       }
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto& map = stop.maps[i];
+      const auto& map = maps[w][i];
       put_node(by_wavelength[w], map, of_iris[i], map.known ? scales[i] : unlimited);
     }
   });
@@ -357,12 +337,11 @@ StopOf traced_stop(const Lens& lens, const TwoPlanes& space) {
 FilmPupilTable FilmPupilTable::Data::with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of,
                                                int threads) const {
   using namespace pupil_table_detail;
-  StopNodes found{iris_detail::IrisShape(iris), stop_of, {}, {}};
-  found.numbers = dimensions == 1 ? stop_numbers<15>(*this, found.shape, stop_of, threads)
-                                  : stop_numbers<20>(*this, found.shape, stop_of, threads);
-  found.numbers_single.assign(found.numbers.begin(), found.numbers.end());
+  const iris_detail::IrisShape shape(iris);
+  const auto make = of_revolution() ? stop_numbers<15, Data> : stop_numbers<20, Data>;
   auto result = std::make_shared<Data>(*this);
-  result->stop = std::make_shared<const StopNodes>(std::move(found));
+  result->stop =
+      std::make_shared<const StopNodes>(StopNodes{shape, stop_of, in_both(make(*this, shape, stop_of, threads))});
   return FilmPupilTable(std::move(result));
 }
 
