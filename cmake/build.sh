@@ -3,7 +3,7 @@
 # needs to build petzval, and the build. POSIX sh.
 
 library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libeigen3-dev libyaml-cpp-dev libceres-dev libopenexr-dev libpng-dev"
-example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev libjpeg-dev libsdl2-dev libimgui-dev"
+example_packages="libcli11-dev libembree-dev libtinyobjloader-dev libjpeg-dev libsdl2-dev libimgui-dev"
 test_packages="libgtest-dev"
 full_packages="glslc libvulkan-dev mesa-vulkan-drivers xvfb xauth xdotool libgl1-mesa-dri python3 python3-numpy python3-opencv liblensfun-data-v1 povray libbenchmark-dev"  # for tests and benchmarks
 docs_packages="doxygen"  # of the target docs; install them yourself

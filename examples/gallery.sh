@@ -162,13 +162,13 @@ END
 
 measured() {
   section measured "Lens blur, measured" "Quality, time and flicker of the blur from layers, after figure 7 and table 1 of Lee et al. 2010."
-  picture layers/rays/rays.png "Quality against the number of rays" "A pupil of 300 mm: 32, 100 and 750 rays per pixel against 100,000 rays through the same
+  picture layers/rays/ray_counts.svg "Quality against the number of rays" "A pupil of 300 mm: 32, 100 and 750 rays per pixel against 100,000 rays through the same
 layers. From 100 rays on the difference is hard to see." <<END
 petzval blur --scene town --thin-lens 50 --f-number 0.1667 --focus 5m --rays 32,100,750 --compare-rays 100000 --supersample 1 \\
   --size 294x220 --out layers/rays
 END
   also layers/rays/rays.svg "PSNR against the number of rays" "Against 100,000 rays of the same layers."
-  picture layers/frames/frames.png "A focus pull" "From the lamp post at 2.3 m over the stall at 5 m to the tower. The flicker, the RMS change of the error from frame to
+  picture layers/frames/frames.svg "A focus pull" "From the lamp post at 2.3 m over the stall at 5 m to the tower. The flicker, the RMS change of the error from frame to
 frame, is in <a href=\"layers/frames/blur.json\">blur.json</a> (white is 1)." <<END
 echo '[{"keys": [{"time_s": 0, "position_mm": [0, 0, -2300]}, {"time_s": 2, "position_mm": [0, 0, -5000]},
   {"time_s": 4, "position_mm": [0, 0, -12000]}]}]' > layers/keys.json
@@ -195,11 +195,11 @@ focus() {
 squared blurs, by exact rays. The lens is the double Gauss 100 mm at f/4. Colour is the signed diameter of the blur: blue nearer than the plane of focus,
 red beyond it, at most 30 µm between the thin lines." halves
   stem=double_gauss_100mm_f2_28deg
-  picture tilt/table/${stem}_before.png "A table top, film upright" "Only the narrow strip between the thin lines is sharp. Points 1 and 2 at the front
+  picture tilt/table/${stem}_before.svg "A table top, film upright" "Only the narrow strip between the thin lines is sharp. Points 1 and 2 at the front
 edge and 4 and 5 at the back are blurred by about half a millimetre, with opposite signs: no upright film makes both edges sharp." <<END
 $(tilted table table)
 END
-  also tilt/table/${stem}_after.png "Film tilted by 15 degrees" "The same scale: the colour has nearly vanished. The remaining rings, with opposite signs
+  also tilt/table/${stem}_after.svg "Film tilted by 15 degrees" "The same scale: the colour has nearly vanished. The remaining rings, with opposite signs
 inside and outside, are curvature of field, which no flat film can follow; the fit divides it between centre and edge.
 <a href=\"tilt/table.txt\">Numbers</a>."
   also tilt/table/${stem}_side.svg "From the side" "Above: the plane of focus (green) meets the front principal plane, and the plane of the film (thin
@@ -209,11 +209,11 @@ front focal plane. Below: the dots are the images of the five points; they lie o
 with distance, from the hinge line at one side of the camera." <<END
 $(tilted facade facade)
 END
-  picture tilt/outlier/${stem}_after.png "A wrong point among eight" "Point 6 lies far in front of the wall. Least squares tilt the film towards it and blur 2
+  picture tilt/outlier/${stem}_after.svg "A wrong point among eight" "Point 6 lies far in front of the wall. Least squares tilt the film towards it and blur 2
 and 5. The map interpolates the scene between the points, so it bulges at 6." <<END
 $(tilted outlier facade_outlier)
 END
-  picture tilt/robust/${stem}_after.png "The wrong point ignored" "With <code>--robust</code> point 6 gets no weight; it is grey in the picture and an outlier
+  picture tilt/robust/${stem}_after.svg "The wrong point ignored" "With <code>--robust</code> point 6 gets no weight; it is grey in the picture and an outlier
 in <a href=\"tilt/robust.txt\">the table</a>. All other points are within 35 µm. The scale is half of the scale before." <<END
 $(tilted robust facade_outlier --robust)
 END
@@ -222,7 +222,7 @@ never overshoot. The bottom diagram shows the blur that focusing cannot remove: 
 <a href=\"pull/${stem}_focus_pull.csv\">A row for every frame</a>." <<END
 petzval pull double_gauss_100mm_f2_28deg --f-number 2 --keys input/rack.json --out pull
 END
-  picture surface/surface.png "A focal surface" "The distances in focus for the angels above: points 1 to 5 at 1.5 m, 6 to 10 at 6 m, and the distances and
+  picture surface/surface.svg "A focal surface" "The distances in focus for the angels above: points 1 to 5 at 1.5 m, 6 to 10 at 6 m, and the distances and
 blurs of points 11 to 16. (Here positions count from the first vertex, in the scene from the entrance pupil 25 mm behind it.) The same surface
 <a href=\"surface/side.svg\">in section</a> and as <a href=\"surface/surface.pfm\">1/distance</a>." <<END
 petzval surface double_gauss_52mm_f1.8 --points input/statues_focus.json --size 600x400 --focus 1500 --out surface
@@ -276,15 +276,15 @@ END
   echo '</svg>'
 } > wu/dots/crops.html
 END
-  picture wu/figure7.png "Figure 7: bokeh of three lenses" "A point light is at 1000 mm; each column has a different focus distance. Focused nearer than the light
+  picture wu/figure7.svg "Figure 7: bokeh of three lenses" "A point light is at 1000 mm; each column has a different focus distance. Focused nearer than the light
 (left), the first two lenses draw a thin bright rim; focused farther (right), a bright core with a slightly darker centre. The third lens does the
 opposite; at 800 mm its disc is nearly uniform with a bright core, while the paper calls it uniform. The Tronnier f/2 below it, an equally likely source
 of the paper's third row, behaves like the first two lenses. Film at the smallest RMS blur: 1000 mm is the sharpest column for every lens." <<END
-wu_figure7 --criterion min_rms --out wu/figure7.png
+wu_figure7 --criterion min_rms --out wu/figure7.svg
 END
-  picture wu/figure7_paraxial.png "Figure 7 with the film at the paraxial focus" "Marginal rays shift every profile, most in the third row, which is now
+  picture wu/figure7_paraxial.svg "Figure 7 with the film at the paraxial focus" "Marginal rays shift every profile, most in the third row, which is now
 sharpest when focused at 1100 mm." <<END
-wu_figure7 --criterion paraxial --out wu/figure7_paraxial.png
+wu_figure7 --criterion paraxial --out wu/figure7_paraxial.svg
 END
   picture wu/statements.html "The statements of the paper, measured" "The radial profile of each picture in the words of the paper. The text defines neither
 \"in focus\" nor the origin of \"from the lens\", so the table shows all four interpretations; the measurements are in
@@ -300,11 +300,11 @@ all highlights are in" ;;
       *1.7*) words="Figure 8: f/1.7" more="The same. The numbers:" ;;
       *) words="Figure 8: f/2" more="The same; this lens vignettes least. The numbers:" ;;
     esac
-    picture "balls/$lens.png" "$words" "$more <a href=\"balls/$lens.csv\">$lens.csv</a>." <<END
+    picture "balls/$lens.svg" "$words" "$more <a href=\"balls/$lens.csv\">$lens.csv</a>." <<END
 $(for focus in 800 900 1000 1100 1200; do
   echo "petzval render $lens --scene input/row_of_lights.json --focus $focus --film 36x3 $(size 1208 100) $(spp 32) --out balls/${lens}_$focus"
 done)
-petzval sheet --title "A row of lights" --out balls/$lens.png --balls balls/$lens.csv \\
+petzval sheet --title "A row of lights" --out balls/$lens.svg --balls balls/$lens.csv \\
  $(for focus in 800 900 1000 1100 1200; do printf ' balls/%s' "${lens}_$focus"; done)
 END
   done
@@ -312,36 +312,36 @@ END
 
 bokeh() {
   section bokeh "Bokeh" "Images of a point of light."
-  picture bokeh/double_gauss_100mm_f1.35_bokeh.png "Off axis, in colour" "The f/1.35 lens with the light 8 degrees off axis, in 25 wavelengths. The rims of the
+  picture bokeh/double_gauss_100mm_f1.35_bokeh.svg "Off axis, in colour" "The f/1.35 lens with the light 8 degrees off axis, in 25 wavelengths. The rims of the
 outer elements clip the disc, coma draws it to a point, and its edge is blue when focused nearer than the light, red when farther." <<END
 petzval psf double_gauss_100mm_f1.35 --at 1000 --focus 800,900,1000,1100,1200 --criterion paraxial --fields 8 \\
   --wavelengths $(seq -s , 430 10 670) --rays 262144 --out bokeh
 END
-  picture colour/double_gauss_100mm_f1.35_chromatic.png "The colours of bokeh" "Blue light has the shorter focus in this lens of 1951. Each disc has a blue and
+  picture colour/double_gauss_100mm_f1.35_chromatic.svg "The colours of bokeh" "Blue light has the shorter focus in this lens of 1951. Each disc has a blue and
 green outline when focused nearer than the light, a red outline when farther, with the other colours in the centre. Three wavelengths give hard edges, 26
 wavelengths blend. The shifts of focus and of the chief ray are in <a href=\"colour/shifts.txt\">shifts.txt</a>." <<END
 petzval colour double_gauss_100mm_f1.35 --rays 524288 --out colour > colour/shifts.txt
 END
-  picture shapes/bokeh_blades.png "Irises with blades" "A far point light through 3 to 9 blades. As in a photograph, the first corner points straight up. The
+  picture shapes/bokeh_blades.svg "Irises with blades" "A far point light through 3 to 9 blades. As in a photograph, the first corner points straight up. The
 corners are on the edge of the disc of a round iris. Spherical aberration bends the edges slightly inwards although the blades are straight." <<END
 petzval shapes --out shapes
 END
-  also shapes/bokeh_cats_eyes.png "Cat's eyes" "The f/1.35 lens over its field, and two discs fitted to its pupils seen from the film: at 11.5 degrees they
+  also shapes/bokeh_cats_eyes.svg "Cat's eyes" "The f/1.35 lens over its field, and two discs fitted to its pupils seen from the film: at 11.5 degrees they
 transmit 68 % of the light, the lens 66 %. A far point light shows the pupil seen from the scene, where the two discs are 14 % larger on the axis and 1.4
 times as large at 11.5 degrees. The bright rim and the bent lower edge are aberrations, which a thin lens does not have."
-  also shapes/bokeh_lens_ratio.png "Lens ratio from 0.2 to 2" "A thin lens with a second rim. Below 1 the second rim makes the disc smaller; near 1 it clips
+  also shapes/bokeh_lens_ratio.svg "Lens ratio from 0.2 to 2" "A thin lens with a second rim. Below 1 the second rim makes the disc smaller; near 1 it clips
 the disc off the axis to a cat's eye; at 2 it clips nothing at 10 degrees. On the axis a far light sees the second rim slightly smaller than the film
 does."
-  also shapes/bokeh_weights.png "Weights of the stop" "Rays weighted by their position on the stop, traced through every surface of the lens. The weights conserve
+  also shapes/bokeh_weights.svg "Weights of the stop" "Rays weighted by their position on the stop, traced through every surface of the lens. The weights conserve
 the light on the iris; in the picture the tiles of a row differ by about 1 % at f/4. Lines of equal brightness follow the blades."
-  also shapes/bokeh_maps.png "Maps of the stop" "Images over the stop: the rings of a lathe-turned aspheric mould, and a cut-out iris. A far light shows the heart
+  also shapes/bokeh_maps.svg "Maps of the stop" "Images over the stop: the rings of a lathe-turned aspheric mould, and a cut-out iris. A far light shows the heart
 upright, as it was cut."
-  picture expressive/highlights.png "An expressive lens" "The f/1.35 lens, focused at 1 m; its first-order model with a power spline and a curved film, both
+  picture expressive/highlights.svg "An expressive lens" "The f/1.35 lens, focused at 1 m; its first-order model with a power spline and a curved film, both
 fitted to the lens; and the model without them. On the axis the spline reproduces the bright core and the bright rim. It cannot have coma. The numbers,
 for editing: <a href=\"expressive/expressive.json\">expressive.json</a>." <<END
 petzval expressive double_gauss_100mm_f1.35 --focus 1000 --rays 65536 --out expressive
 END
-  picture psf_set/psf_set.png "A set of PSFs" "Double Gauss 100 mm f/2, focused at 2000 mm: the field grows to the right, the distance downwards, and up is away
+  picture psf_set/psf_set.svg "A set of PSFs" "Double Gauss 100 mm f/2, focused at 2000 mm: the field grows to the right, the distance downwards, and up is away
 from the centre of the photograph. Cat's eyes narrow with the field, and their light decreases. Lights nearer than the focus have a ring inside the edge,
 lights beyond it a bright rim and core. The row in focus, which has a separate scale, shows coma and caustics. The data:
 <a href=\"psf_set/psf_set.exr\">psf_set.exr</a>, <a href=\"psf_set/psf_set.json\">psf_set.json</a>." <<END

@@ -2,7 +2,7 @@
 // Repeats figure 7 of Wu et al. 2010, "Realistic rendering of bokeh effect based on optical aberrations": a point light
 // at 1000 mm through three double Gauss lenses and a fourth double Gauss, focused at five distances.
 //
-//   wu_figure7 --out wu_figure7.png
+//   wu_figure7 --out wu_figure7.svg
 #include <algorithm>
 #include <array>
 #include <iostream>
@@ -16,6 +16,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/svg_page.hpp"
 #include "support/wu2010.hpp"
 
 namespace {
@@ -24,21 +25,15 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
                              examples::Progress& progress) {
   const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
   const auto loaded = examples::load_lens({.file = file.string()}, std::array{petzval::d_line_nm});
-  std::vector<examples::BokehScene> scenes;
-  double half_width = 0;
+  examples::SheetRow row{wu.title, wu.subtitle};
   for (const double focus : examples::wu_focus_mm) {
-    scenes.push_back(examples::focused_scene(loaded.lens, focus, setup));
-    const auto sketch = petzval::point_image(scenes.back().lens, scenes.back().light, {.samples = 1u << 14});
-    half_width = std::max(half_width, 1.08 * sketch.size.max_radius);
-  }
-  const int tile_pixels = examples::tile_pixels(examples::wu_focus_mm.size());
-  examples::SheetRow row{wu.title, wu.subtitle, 2 * half_width / tile_pixels, {}};
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    progress.step(std::string(wu.lens) + ", " + examples::focus_caption(examples::wu_focus_mm[i]));
-    const auto image = petzval::point_image(
-        scenes[i].lens, scenes[i].light,
-        {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width, .threads = examples::threads()});
-    row.tiles.push_back(examples::bokeh_tile(examples::wu_focus_mm[i], image));
+    progress.step(std::string(wu.lens) + ", " + examples::focus_caption(focus));
+    const auto scene = examples::focused_scene(loaded.lens, focus, setup);
+    const auto image = petzval::point_image(scene.lens, scene.light,
+                                            {.samples = samples,
+                                             .pixels = examples::tile_pixels(examples::wu_focus_mm.size()),
+                                             .threads = examples::threads()});
+    row.tiles.push_back(examples::bokeh_tile(focus, image, examples::expose(examples::irradiance(image.psf))));
   }
   return row;
 }
@@ -50,14 +45,14 @@ int main(int argc, char** argv) {
   std::uint32_t samples = 1u << 21;
   examples::App app(
       "Repeats figure 7 of Wu et al. 2010: a point light at 1000 mm from the front vertex, on axis, at the d line, "
-      "through four double Gauss lenses focused at 800 to 1200 mm. One PNG.",
+      "through four double Gauss lenses focused at 800 to 1200 mm. One SVG.",
       "wu_figure7");
   examples::add_criterion(app, criterion);
   examples::add_samples(app, samples);
-  examples::add_out_file(app, out_file, "picture to write", "FILE.png")->required();
+  examples::add_out_file(app, out_file, "picture to write", "FILE.svg")->required();
 
   return examples::run(app, argc, argv, [&] {
-    examples::want_ending("--out", out_file, ".png");
+    examples::want_ending("--out", out_file, ".svg");
     const examples::BokehSetup setup{.light_mm = examples::wu_light_mm,
                                      .criterion = examples::named(criterion, examples::focus_criteria)};
     examples::Sheet sheet{"A point light at 1000 mm at five focus distances", {}, {}};
@@ -73,7 +68,7 @@ int main(int argc, char** argv) {
         "by " +
         criterion + "."};
     for (const std::string& note : examples::bokeh_notes()) sheet.notes.push_back(note);
-    petzval::write_png(examples::draw_sheet(sheet), out_file);
+    examples::write_svg(examples::draw_sheet(sheet), out_file);
     std::cout << out_file << '\n';
   });
 }

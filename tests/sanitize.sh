@@ -23,7 +23,6 @@ done
 
 need $library_packages $example_packages $test_packages $full_packages
 export ASAN_OPTIONS=detect_stack_use_after_return=1:check_initialization_order=1:strict_string_checks=1:allocator_may_return_null=1
-export "LSAN_OPTIONS=print_suppressions=0 suppressions=$root/tests/lsan.supp"
 export UBSAN_OPTIONS=print_stacktrace=1
 export "TSAN_OPTIONS=halt_on_error=1 suppressions=$root/tests/tsan.supp"
 BUILD_ROOT=$BUILD_DIR

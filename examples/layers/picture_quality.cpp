@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "petzval/core/error.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace lens_blur {
@@ -290,31 +291,24 @@ std::string quality_plot(std::vector<RayQuality> qualities, const std::string& r
     const auto [worst, best] = std::ranges::minmax(qualities, {}, &RayQuality::psnr_db);
     low = 10 * std::floor(worst.psnr_db / 10 - 0.3), high = 10 * std::floor(best.psnr_db / 10) + 10;
   }
-  const auto text = [](double x, double y, const std::string& words, const std::string& more = "") {
-    return "<text x=\"" + examples::number(x, 4) + "\" y=\"" + examples::number(y, 4) + "\"" + more + ">" + words +
-           "</text>\n";
-  };
   const auto y_of = [&](double psnr) { return foot - (psnr - low) / (high - low) * (foot - top); };
-  std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 400\" font-family=\"sans-serif\" "
-      "font-size=\"13\">\n<rect width=\"640\" height=\"400\" fill=\"#fff\"/>\n" +
-      text(16, 26, "Quality and number of rays", " font-size=\"17\" font-weight=\"bold\"") +
-      text(16, 46, "PSNR (dB) over rays per pixel, " + remark);
+  examples::SvgPage page;
+  page.text(16, 26, 17, "Quality and number of rays", "#000");
+  page.text(16, 46, 13, "PSNR (dB) over rays per pixel, " + remark, "#000");
   for (double psnr = low; psnr <= high; psnr += 10) {
-    const std::string y = examples::number(y_of(psnr), 4);
-    svg += "<path d=\"M70 " + y + "H610\" stroke=\"#ccc\"/>\n" +
-           text(left - 8, y_of(psnr) + 4, examples::number(psnr), " text-anchor=\"end\"");
+    page.rect(left, y_of(psnr), right - left, 1, "#ccc");
+    page.text(left - 8, y_of(psnr) + 4, 13, examples::number(psnr), "#000", "end");
   }
   std::string line;
   for (const RayQuality& q : qualities) {
     const double x = left + (std::log10(q.rays) - least) / (most - least) * (right - left), y = y_of(q.psnr_db);
-    const std::string at = examples::number(x, 4), down = examples::number(y, 4);
-    line += (line.empty() ? "M" : "L") + at + " " + down;
-    svg += "<circle cx=\"" + at + "\" cy=\"" + down + "\" r=\"4\" fill=\"#1f5fc4\"/>\n" +
-           text(x + 8, y + 14, examples::number(q.psnr_db, 3) + " dB") +
-           text(x, foot + 20, examples::number(q.rays), " text-anchor=\"middle\"");
+    line += (line.empty() ? "M" : "L") + examples::number(x, 4) + " " + examples::number(y, 4);
+    page.disc(x, y, 4, "#1f5fc4");
+    page.text(x + 8, y + 14, 13, examples::number(q.psnr_db, 3) + " dB", "#000");
+    page.text(x, foot + 20, 13, examples::number(q.rays), "#000", "middle");
   }
-  return svg + "<path d=\"" + line + "\" fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"1.5\"/>\n</svg>\n";
+  page.path(line, "stroke=\"#1f5fc4\" stroke-width=\"1.5\"");
+  return page.finish(640, 400, "#fff");
 }
 
 }  // namespace lens_blur

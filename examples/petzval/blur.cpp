@@ -30,6 +30,7 @@
 #include "support/contact_sheet.hpp"
 #include "support/files.hpp"
 #include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -49,7 +50,7 @@ struct Options {
   std::string out_folder;
 };
 
-/// Largest number of frames in frames.png.
+/// Largest number of frames in frames.svg.
 constexpr std::size_t most_shown = 8;
 
 constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
@@ -214,12 +215,14 @@ class Job {
     }
   }
 
-  /// Writes frames.png: up to 8 frames at equal steps of time.
+  /// Writes frames.svg: up to 8 frames at equal steps of time.
   void write_frames(const std::filesystem::path& folder) {
     const bool thick = lens_.model() == petzval::ModelKind::thick;
     examples::Sheet sheet{.title = lens_.name() + (thick ? " (thick lens)" : ""), .rows = {}, .notes = {}};
     for (examples::Tile& tile : shown_) {
-      if (sheet.rows.empty() || sheet.rows.back().tiles.size() == most_shown / 2) sheet.rows.emplace_back();
+      if (sheet.rows.empty() || sheet.rows.back().tiles.size() == most_shown / 2) {
+        sheet.rows.emplace_back().columns = most_shown / 2;
+      }
       sheet.rows.back().tiles.push_back(std::move(tile));
     }
     sheet.notes.push_back(std::to_string(options_.frames) + " frames");
@@ -228,7 +231,7 @@ class Job {
           "; flicker " + examples::number(result_["flicker"].get<double>(), 3) +
           ": RMS change of the error from frame to frame, against rays traced through the scene (white is 1)";
     }
-    write_sheet(sheet, folder / "frames.png");
+    write_sheet(sheet, folder / "frames.svg");
   }
 
   /// Blurs the same layers with each number of rays of --rays and compares the pictures with --compare-rays rays.
@@ -273,7 +276,7 @@ class Job {
       captions.push_back("SSIM " + examples::number(like.ssim, 4));
     }
     add(most, options_.compare_rays, result_["compare_rays_ms"].get<double>());
-    write_sheet(sheet, folder / "rays.png");
+    write_sheet(sheet, folder / "ray_counts.svg");
     examples::write_text(folder / "rays.svg",
                          lens_blur::quality_plot(qualities, "against " + std::to_string(options_.compare_rays) +
                                                                 " rays of the same layers, " + lens_.name()));
@@ -281,7 +284,7 @@ class Job {
   }
 
   void write_sheet(const examples::Sheet& sheet, const std::filesystem::path& file) const {
-    examples::write_png(examples::draw_sheet(sheet), file);
+    examples::write_svg(examples::draw_sheet(sheet), file);
     std::cout << file.string() << '\n';
   }
 
@@ -341,7 +344,7 @@ class Job {
   petzval::LayerSet layers_;
   petzval::BlurredImage blurred_;
   Json result_;
-  std::vector<examples::Tile> shown_;  ///< tiles of frames.png
+  std::vector<examples::Tile> shown_;  ///< tiles of frames.svg
   std::vector<float> last_error_;
   double nearest_mm_ = std::numeric_limits<double>::infinity();  ///< while a picture is computed
   double flicker_ = 0, rays_error_px_ = 0;                       ///< rays_error_px_: maximum over all frames
@@ -358,7 +361,7 @@ int commands::blur(int argc, char** argv) {
       "petzval blur");
   lens_blur::add_input(app, options.input);
   lens_blur::add_lens(app, options.lens,
-                      "written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points then "
+                      "written as blur_0001.* and so on, and up to 8 of them side by side in frames.svg; --points then "
                       "gives focus points with keys");
   constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
   examples::add_count(app, "--layers", options.layers, layers, "largest number of surfaces behind each other");
@@ -366,7 +369,7 @@ int commands::blur(int argc, char** argv) {
                "compare the picture of a scene with the same rays traced through the scene");
   examples::add_count(app, "--compare-rays", options.compare_rays, {1, 1 << 20, "a whole number from 1 to 1048576"},
                       "compare the pictures of all numbers of --rays with a picture of this many rays of the same "
-                      "layers: rays.png, rays.svg, many_rays.* and `quality` in blur.json")
+                      "layers: ray_counts.svg, rays.svg, many_rays.* and `quality` in blur.json")
       ->default_str("");
   examples::add_count(app, "--supersample", options.supersample, supersamples,
                       "subpixels per pixel in each direction, averaged; the rays of a pixel are divided between its "

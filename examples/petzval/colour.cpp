@@ -26,7 +26,7 @@
 #include "support/interrupt.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
-#include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -135,7 +135,6 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
       {"The film is at the focus of the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
            " nm (" + options.focus.criterion + "). Tiles of a row have the same film scale and their own exposure.",
        "With three wavelengths each channel has its own image, without intermediate colours."}};
-  const int tile_pixels = examples::tile_pixels(options.focus_mm.size());
   for (const double field : options.field_deg) {
     for (const bool triple : {false, true}) {
       const Weights weights = triple ? triple_weights(set) : spectral;
@@ -144,16 +143,13 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
                              .subtitle = triple
                                              ? "650 nm in red, 510 nm in green, 475 nm in blue"
                                              : "white: " + options.white_point + ", weighted by the CIE 1931 functions",
-                             .pixel_mm = 0,
                              .tiles = {}};
       for (const Picture& p : pictures) {
         if (p.field_deg != field) continue;
-        row.pixel_mm = p.image.psf.pixel_mm * picture_pixels / tile_pixels;
         std::vector<std::string> captions{examples::focus_caption(p.focus_mm)};
         if (!triple) captions.push_back("RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm");
-        row.tiles.push_back(
-            {examples::expose(examples::with_width(petzval::render(p.image.psf, weights), tile_pixels)).picture,
-             std::move(captions)});
+        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture, std::move(captions),
+                             picture_pixels * p.image.psf.pixel_mm});
       }
       result.rows.push_back(std::move(row));
     }
@@ -217,7 +213,7 @@ int commands::colour(int argc, char** argv) {
       "wavelength per channel (650, 510, 475 nm).\n"
       "Prints longitudinal and lateral colour: shifts of focus and chief ray against the primary wavelength (nearest "
       "to the d line); positive: farther from the lens, or towards +y on the film. Writes to DIR and prints the "
-      "paths: LENS_chromatic.png (contact sheet), LENS_<F>deg_focus_<D>mm.exr (a channel S0.<wavelength>nm for each "
+      "paths: LENS_chromatic.svg (contact sheet), LENS_<F>deg_focus_<D>mm.exr (a channel S0.<wavelength>nm for each "
       "wavelength: fraction of its light in the paraxial entrance pupil, per mm^2 of film; R, G, B: sum of all "
       "wavelengths for the light of the white point) and LENS_chromatic.json. Images show the film as a photograph "
       "does.",
@@ -293,9 +289,9 @@ int commands::colour(int argc, char** argv) {
         examples::write_text(numbers, json.dump(1) + '\n');
       }
     }
-    examples::write_png(examples::draw_sheet(sheet(pictures, lens, options, weights)),
-                        folder / (loaded.id + "_chromatic.png"));
-    options.output.file(folder / (loaded.id + "_chromatic.png"));
+    examples::write_svg(examples::draw_sheet(sheet(pictures, lens, options, weights)),
+                        folder / (loaded.id + "_chromatic.svg"));
+    options.output.file(folder / (loaded.id + "_chromatic.svg"));
     options.output.file(numbers);
     options.output.report(json);
   });

@@ -27,7 +27,7 @@
 #include "support/expressive_flags.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
-#include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -108,7 +108,8 @@ class Highlights {
     described["rms_mm"] = found.size.rms_radius;
     return {examples::expose(examples::irradiance(found.psf)).picture,
             {number(petzval::degrees(field_rad), 3) + " degrees",
-             found.throughput > 0 ? "RMS " + number(found.size.rms_radius, 3) + " mm" : "no light"}};
+             found.throughput > 0 ? "RMS " + number(found.size.rms_radius, 3) + " mm" : "no light"},
+            2 * half_width_mm};
   }
 
  private:
@@ -172,11 +173,8 @@ void draw(Options options) {
     half_width = 1.08 * std::max(half_width, 0.01);
     for (const auto& [title, subtitle, camera] : rows) {
       progress.step(std::string(title) + ", light at " + number(light_mm) + " mm");
-      auto& row =
-          sheet.rows.emplace_back(examples::SheetRow{.title = title,
-                                                     .subtitle = "light at " + number(light_mm) + " mm, " + subtitle,
-                                                     .pixel_mm = 2 * half_width / tile_pixels(),
-                                                     .tiles = {}});
+      auto& row = sheet.rows.emplace_back(examples::SheetRow{
+          .title = title, .subtitle = "light at " + number(light_mm) + " mm, " + subtitle, .tiles = {}});
       for (const double field : fields) {
         Json& tile =
             highlights_json.emplace_back(Json{{"row", title}, {"light_mm", examples::finite_or_null(light_mm)}});
@@ -186,12 +184,12 @@ void draw(Options options) {
   }
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
-  examples::write_png(examples::draw_sheet(sheet), folder / "highlights.png");
+  examples::write_svg(examples::draw_sheet(sheet), folder / "highlights.svg");
   Json document = description(expressive);
   document["lens"] = lens.name();
   document["highlights"] = highlights_json;
   examples::write_text(folder / "expressive.json", document.dump(1) + '\n');
-  for (const char* name : {"highlights.png", "expressive.json"}) options.output.file(folder / name);
+  for (const char* name : {"highlights.svg", "expressive.json"}) options.output.file(folder / name);
   options.output.report(document);
 }
 
@@ -201,7 +199,7 @@ int commands::expressive(int argc, char** argv) {
   Options options;
   examples::App app(
       "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and of the "
-      "model without aberrations: DIR/highlights.png, with the numbers of aberrations and highlights in "
+      "model without aberrations: DIR/highlights.svg, with the numbers of aberrations and highlights in "
       "DIR/expressive.json. The default aberrations are the real lens's.",
       "petzval expressive");
   examples::add_lens(app, options.lens_file);

@@ -61,7 +61,7 @@ constexpr std::array renderer_commands{
             "biogon_35mm_f2.8 --table in.csv --model thick --focus 3m --out rays.csv", &camera_rays},
     Command{"render", "path, light or bidirectional tracing through a lens; merge",
             "double_gauss_100mm_f2.0 --scene street --focus 3m --out out", render_command, embree},
-    Command{"sheet", "contact sheets of renderings", "out/a out/b --out sheet.png", sheet_command, embree},
+    Command{"sheet", "contact sheets of pictures", "out/a out/b --out sheet.svg", sheet_command, embree},
     Command{"blur", "lens blur of layers or of a picture with depth",
             "--scene town double_gauss_52mm_f1.8 --focus 3m --out out", blur_command, embree},
     Command{"view", "lens blur in a window: focus by clicking", "--scene town double_gauss_52mm_f1.8", view_command,

@@ -33,6 +33,7 @@
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -67,6 +68,7 @@ struct Picture {
   std::optional<petzval::Camera> camera;
   petzval::PointImage image;
   std::optional<petzval::DiffractionPsf> waves;  ///< with --diffraction
+  examples::Tile tile;                           ///< of the contact sheet
 };
 
 /// A lens and its pictures, by field and focus.
@@ -117,7 +119,7 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
                                      .criterion = options.focus.options().criterion,
                                      .field_rad = petzval::radians(field)};
     for (const double focus : options.focus_mm) {
-      Picture picture{field, focus, examples::focused_scene(lens, focus, setup), {}, {}, {}};
+      Picture picture{field, focus, examples::focused_scene(lens, focus, setup), {}, {}, {}, {}};
       examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
       if (!options.plain()) {
         picture.camera =
@@ -129,38 +131,25 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
   return pictures;
 }
 
-/// A row of the contact sheet of a lens: a field.
-examples::SheetRow sheet_row(std::span<const Picture> pictures, const examples::LoadedLens& loaded,
-                             const Options& options, double half_width) {
-  const int tile_pixels = examples::tile_pixels(pictures.size());
-  examples::SheetRow row{
-      .title = loaded.lens.name(),
-      .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
-                  examples::number(pictures.front().field_deg) + "°; distances from the " + options.focus.from() +
-                  "; focus " + options.focus.criterion +
-                  (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
-                  (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
-                  (options.model == "exact_double" ? "" : "; " + options.model) +
-                  (options.diffraction ? "; with diffraction" : ""),
-      .pixel_mm = 2 * half_width / tile_pixels,
-      .tiles = {}};
-  for (const Picture& p : pictures) {
-    // Waves replace the picture below; only the numbers of the rays are needed.
-    const auto image = p.waves ? p.image
-                               : image_of(p, {.samples = options.samples,
-                                              .pixels = tile_pixels,
-                                              .half_width_mm = half_width,
-                                              .threads = examples::threads()});
-    examples::Tile tile = examples::bokeh_tile(p.focus_mm, image, options.light);
-    if (p.waves) {
-      const petzval::RgbImage waves = examples::irradiance(*p.waves, options.light);
-      const auto shown = examples::expose(examples::with_width(waves, tile_pixels), options.exposure);
-      tile.picture = shown.picture;
-      tile.captions.back() = examples::white_caption(shown);
+/// The contact sheet of a lens, at one scale: a row for each field. Moves the tiles of the pictures.
+examples::Sheet sheet_of(Subject& subject, const Options& options) {
+  examples::Sheet sheet{"Bokeh of a point light", {}, examples::bokeh_notes()};
+  for (std::size_t i = 0; i < subject.pictures.size(); i += options.focus_mm.size()) {
+    sheet.rows.push_back(
+        {.title = subject.loaded.lens.name(),
+         .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
+                     examples::number(subject.pictures[i].field_deg) + "°; distances from the " + options.focus.from() +
+                     "; focus " + options.focus.criterion +
+                     (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
+                     (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
+                     (options.model == "exact_double" ? "" : "; " + options.model) +
+                     (options.diffraction ? "; with diffraction" : ""),
+         .tiles = {}});
+    for (Picture& p : std::span(subject.pictures).subspan(i, options.focus_mm.size())) {
+      sheet.rows.back().tiles.push_back(std::move(p.tile));
     }
-    row.tiles.push_back(std::move(tile));
   }
-  return row;
+  return sheet;
 }
 
 Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
@@ -268,32 +257,19 @@ void render(std::vector<Subject> subjects, const Options& options, const petzval
         const examples::Together uninterrupted;
         const petzval::RgbImage image =
             p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image.psf, options.light);
-        for (const auto& file : examples::write_picture(image, examples::expose(image, options.exposure).picture,
-                                                        options.formats, folder / stem)) {
+        p.tile = examples::bokeh_tile(p.focus_mm, p.image, examples::expose(image, options.exposure));
+        for (const auto& file : examples::write_picture(image, p.tile.picture, options.formats, folder / stem)) {
           options.output.file(file);
         }
-        // Sheets of rays trace their own pictures; many lenses and fields must fit into memory.
-        if (!p.waves) p.image.psf.counts = {};
+        if (p.waves) p.tile.width_mm = picture_pixels * p.waves->pixel_mm;
+        p.image.psf.counts = {};  // many lenses and fields must fit into memory
         lenses.back() = to_json(std::span(subject.pictures).first(i + 1), loaded, options, controls);
         examples::write_text(numbers, report().dump(1) + '\n');
       }
+      const std::filesystem::path file = folder / (loaded.id + "_bokeh.svg");
+      examples::write_svg(examples::draw_sheet(sheet_of(subject, options)), file);
+      options.output.file(file);
     }
-  }
-  double tile_half_width = half_width;
-  for (const Picture& p : subjects.front().pictures) {  // the only subject, unless all pictures have one width
-    if (half_width == 0) tile_half_width = std::max({tile_half_width, 1e-4, 1.08 * p.image.size.max_radius});
-  }
-  examples::Progress progress("contact sheet", subjects.size());
-  for (const Subject& subject : subjects) {
-    progress.step(subject.loaded.id);
-    examples::Sheet sheet{"Bokeh of a point light", {}, examples::bokeh_notes()};
-    for (std::size_t i = 0; i < subject.pictures.size(); i += options.focus_mm.size()) {
-      sheet.rows.push_back(sheet_row(std::span(subject.pictures).subspan(i, options.focus_mm.size()), subject.loaded,
-                                     options, tile_half_width));
-    }
-    const std::filesystem::path file = folder / (subject.loaded.id + "_bokeh.png");
-    examples::write_png(examples::draw_sheet(sheet), file);
-    options.output.file(file);
   }
   if (!one || options.fields_deg.size() > 1) {
     const std::filesystem::path table = std::filesystem::path(numbers).replace_extension(".csv");
@@ -313,7 +289,7 @@ int commands::psf(int argc, char** argv) {
       "--diffraction by waves.\n"
       "Writes to DIR and prints the paths, each picture as soon as it is complete: LENS_focus_<D>mm.exr (float, "
       "linear: fraction of the light in the paraxial entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each "
-      "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Several lenses or fields: "
+      "with its own exposure), LENS_bokeh.svg (all at one scale) and LENS_bokeh.json. Several lenses or fields: "
       "pictures LENS_<F>deg_focus_<D>mm of one scale, and one table of all, bokeh.csv and bokeh.json (one lens: "
       "LENS_bokeh). Images show the film as a "
       "photograph does, rotated by 180 degrees (+x to the left, +y down); centroids are in the axes of the film. "

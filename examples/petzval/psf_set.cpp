@@ -297,7 +297,7 @@ int main_compute(int argc, char** argv) {
   examples::App app(
       "Computes the images of point lights over a grid of fields, distances, wavelengths and f-numbers. Writes to DIR "
       "and prints the paths: psf_set.exr (one part for each PSF: channel Y is its light, hits.x and hits.y its rays), "
-      "psf_set.json (index with units) and psf_set.png (contact sheet). Each complete PSF is a file in DIR/psfs. With "
+      "psf_set.json (index with units) and psf_set.svg (contact sheet). Each complete PSF is a file in DIR/psfs. With "
       "--shard only these files are written; petzval psf-set merge combines them, bit for bit as one run.\n"
       "petzval psf-set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
       "petzval psf-set query FILE.exr --fields F --at D --out PSF.exr   interpolates a PSF at any point",

@@ -20,7 +20,7 @@
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
-#include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -44,17 +44,8 @@ petzval::PsfOptions tile_options(double half_width_mm, std::size_t columns) {
           .threads = examples::threads()};
 }
 
-/// A row without tiles; all tiles of a row have one scale.
-examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm,
-                       std::size_t columns) {
-  return {.title = title,
-          .subtitle = subtitle,
-          .pixel_mm = 2 * half_width_mm / examples::tile_pixels(columns),
-          .tiles = {}};
-}
-
 examples::Tile tile(const petzval::PointImage& image, const std::vector<std::string>& captions) {
-  return {examples::expose(examples::irradiance(image.psf)).picture, captions};
+  return {examples::expose(examples::irradiance(image.psf)).picture, captions, image.psf.pixels * image.psf.pixel_mm};
 }
 
 /// The Tronnier double Gauss at f/4, with a light on the axis.
@@ -88,10 +79,9 @@ examples::Sheet blades() {
        "Light: area of the iris relative to the round iris of the same f-number. The first corner points up, and all "
        "corners are on the edge of the round iris."}};
   for (const auto& [name, roundness] : all_edges) {
-    auto& tiles = sheet.rows
-                      .emplace_back(row(std::string(name) + " edges", "roundness " + number(roundness),
-                                        scene.half_width_mm, counts.size()))
-                      .tiles;
+    auto& tiles =
+        sheet.rows.emplace_back(examples::SheetRow{std::string(name) + " edges", "roundness " + number(roundness)})
+            .tiles;
     for (const int count : counts) {
       const petzval::Iris iris{.blades = count, .roundness = roundness};
       const auto image = petzval::point_image(petzval::with_iris(scene.lens, iris), scene.light,
@@ -132,7 +122,7 @@ examples::Sheet cats_eyes() {
             petzval::ModelKind::thin_two_disc,
             {}},
         Row{"thin lens", "with the lens ratio and the rate of change of the fit", petzval::ModelKind::thin, eye}}) {
-    auto& tiles = sheet.rows.emplace_back(row(title, subtitle, half_width_mm, fields_deg.size())).tiles;
+    auto& tiles = sheet.rows.emplace_back(examples::SheetRow{title, subtitle}).tiles;
     double on_axis = 0;
     for (const double field : fields_deg) {
       const examples::BokehScene scene{lens, light(field)};
@@ -165,10 +155,10 @@ examples::Sheet lens_ratios() {
     const petzval::PointImage open = image({}, {.samples = samples});
     const double half_width_mm = 1.08 * open.size.max_radius;
     auto& tiles = sheet.rows
-                      .emplace_back(row(field == 0 ? "on the axis" : number(field) + "\u00b0 off the axis",
-                                        "rate of change " + number(rate_of_change) +
-                                            ": the second rim moves with the distance from the centre of the film",
-                                        half_width_mm, ratios.size()))
+                      .emplace_back(examples::SheetRow{
+                          field == 0 ? "on the axis" : number(field) + "\u00b0 off the axis",
+                          "rate of change " + number(rate_of_change) +
+                              ": the second rim moves with the distance from the centre of the film"})
                       .tiles;
     for (const double ratio : ratios) {
       const petzval::PointImage eye =
@@ -190,7 +180,7 @@ examples::Sheet weights() {
        "Weight 1 + p (d + 1) x^d - p; x: fraction of the iris area nearer to its centre, or for d below "
        "0 farther out."}};
   const auto add_row = [&](const std::string& title, const std::vector<petzval::EdgeWeight>& edges, int blades) {
-    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm, edges.size())).tiles;
+    auto& tiles = sheet.rows.emplace_back(examples::SheetRow{title, ""}).tiles;
     for (const auto& [d, p] : edges) {
       const auto image = scene.image(petzval::ModelKind::exact_float,
                                      {.blades = blades, .weight_distribution = d, .weight_strength = p}, edges.size());
@@ -232,7 +222,7 @@ examples::Sheet maps() {
       {petzval::onion_rings({.period = 0.1, .contrast = 0.5, .jitter = 0.3}), "onion rings", "period .1, contrast .5"},
       {heart(), "an image as iris", "a heart"}};
   const auto add_row = [&](petzval::ModelKind model, const std::string& title) {
-    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm, shown.size())).tiles;
+    auto& tiles = sheet.rows.emplace_back(examples::SheetRow{title, ""}).tiles;
     for (const auto& [map, caption, below] : shown) {
       petzval::BokehControls controls;
       controls.weight_map = map;
@@ -249,10 +239,10 @@ examples::Sheet maps() {
 int commands::shapes(int argc, char** argv) {
   std::string out_folder;
   examples::App app(
-      "Draws contact sheets of an out-of-focus point light into DIR and prints their paths: bokeh_blades.png (3 to 9 "
-      "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field compared with two fitted "
-      "discs), bokeh_lens_ratio.png (a second rim from 0.2 to 2 times as large), bokeh_weights.png (weights of the "
-      "rim) and bokeh_maps.png (onion rings, an image as iris).",
+      "Draws contact sheets of an out-of-focus point light into DIR and prints their paths: bokeh_blades.svg (3 to 9 "
+      "blades, straight, rounded and hollow), bokeh_cats_eyes.svg (a lens over its field compared with two fitted "
+      "discs), bokeh_lens_ratio.svg (a second rim from 0.2 to 2 times as large), bokeh_weights.svg (weights of the "
+      "rim) and bokeh_maps.svg (onion rings, an image as iris).",
       "petzval shapes");
   examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
@@ -264,19 +254,19 @@ int commands::shapes(int argc, char** argv) {
     };
     const std::filesystem::path folder = out_folder;
     examples::make_folder(folder);  // fail before the drawing, which takes seconds
-    const std::array<Picture, 5> all{{{"bokeh_blades.png", "blades", blades},
-                                      {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
-                                      {"bokeh_lens_ratio.png", "lens ratios", lens_ratios},
-                                      {"bokeh_weights.png", "weights", weights},
-                                      {"bokeh_maps.png", "maps", maps}}};
+    const std::array<Picture, 5> all{{{"bokeh_blades.svg", "blades", blades},
+                                      {"bokeh_cats_eyes.svg", "cat's eyes", cats_eyes},
+                                      {"bokeh_lens_ratio.svg", "lens ratios", lens_ratios},
+                                      {"bokeh_weights.svg", "weights", weights},
+                                      {"bokeh_maps.svg", "maps", maps}}};
     examples::Progress progress("bokeh shapes", all.size());
-    std::vector<petzval::Rgb8Image> pictures;
+    std::vector<std::string> pictures;
     for (const auto& [file, caption, sheet] : all) {
       progress.step(caption);
       pictures.push_back(examples::draw_sheet(sheet()));
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
-      examples::write_png(pictures[i], folder / all[i].file);
+      examples::write_svg(pictures[i], folder / all[i].file);
       std::cout << (folder / all[i].file).string() << '\n';
     }
   });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays out pictures of petzval render on a sheet and measures the highlights of the balls scene.
+// Lays out pictures on a sheet and measures the highlights of the balls scene.
 //
-//   petzval sheet --title "Balls" --out balls.png --balls balls.csv FOLDER...
+//   petzval sheet --title "Balls" --out balls.svg --balls balls.csv FOLDER...
+//   petzval sheet out/a/*.exr out/b/*.exr --columns 4 --out sheet.svg
 #include "commands.hpp"
 
 #include <algorithm>
@@ -10,7 +11,9 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -21,7 +24,7 @@
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"
 #include "support/files.hpp"
-#include "support/picture_files.hpp"
+#include "support/svg_page.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -30,13 +33,17 @@ namespace fs = std::filesystem;
 using examples::Json;
 using examples::number;
 
+/// A picture of petzval render, or a picture file without a job.
 struct Picture {
-  fs::path folder;
+  fs::path path;
   petzval::RgbImage image;
   Json job;
 
-  /// The focus, and differences from an upright film behind the unmodified lens.
+  bool rendered() const { return !job.is_null(); }
+  bool own_exposure() const { return !rendered() && path.extension() == ".exr"; }
+  /// The name of the file; or the focus, and differences from an upright film behind the unmodified lens.
   std::vector<std::string> captions() const {
+    if (!rendered()) return {path.filename().string()};
     const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
     std::string from = job.at("distance_from");
     std::replace(from.begin(), from.end(), '_', ' ');
@@ -50,54 +57,35 @@ struct Picture {
     if (bent) lines.emplace_back("expressive lens");
     return lines;
   }
+  /// Name of the lens; empty for a picture file.
   std::string lens() const {
+    if (!rendered()) return {};
     return job.at("lens").get<std::string>() + (job.at("model") == "pinhole" ? ", pinhole" : "");
   }
 };
 
-Picture read(const fs::path& folder) {
-  Picture picture{folder, petzval::read_exr(folder / "picture.exr"), {}};
+Picture read(const fs::path& path) {
+  std::error_code none;
+  if (!fs::is_directory(path, none)) {
+    if (path.extension() == ".png") return {path, petzval::read_png(path), {}};
+    if (path.extension() == ".exr") return {path, petzval::read_exr(path), {}};
+    throw petzval::Error(path.string() + ": must be a folder of petzval render, or a picture in .png or .exr");
+  }
+  Picture picture{path, petzval::read_exr(path / "picture.exr"), {}};
   try {
-    picture.job = Json::parse(examples::read_text(folder / "render.json")).at("job");
+    picture.job = Json::parse(examples::read_text(path / "render.json")).at("job");
     picture.captions(), picture.lens();
   } catch (const Json::exception&) {
-    throw petzval::Error((folder / "render.json").string() + ": not a file of petzval render");
+    throw petzval::Error((path / "render.json").string() + ": not a file of petzval render");
   }
   return picture;
 }
 
-/// The size of the film across.
+/// The size of the film across; 0 for a picture file.
 double film_width_mm(const Picture& picture) {
+  if (!picture.rendered()) return 0;
   const std::string film = picture.job.at("film_mm");
   return examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
-}
-
-examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string& title, std::size_t columns,
-                         const std::function<float(const petzval::RgbImage&)>& exposure) {
-  examples::Sheet sheet{title, {}, {}};
-  const int width = std::min(pictures[0].image.width, examples::column_pixels(columns));
-  std::string row_title;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const Picture& p = pictures[i];
-    if (p.image.width != pictures[0].image.width || p.image.height != pictures[0].image.height) {
-      throw petzval::Error((p.folder / "picture.exr").string() + ": size = " + std::to_string(p.image.width) + " x " +
-                           std::to_string(p.image.height) + " pixels; must be the same for all pictures");
-    }
-    if (i % columns == 0) {
-      const auto end = pictures.begin() + static_cast<std::ptrdiff_t>(std::min(i + columns, pictures.size()));
-      const bool same_lens = std::all_of(pictures.begin() + static_cast<std::ptrdiff_t>(i), end,
-                                         [&](const Picture& other) { return other.lens() == p.lens(); });
-      const std::string lens = same_lens ? p.lens() : "";
-      const bool continued = i > 0 && same_lens && lens == row_title;
-      row_title = lens;
-      sheet.rows.push_back({continued ? "" : lens, "", film_width_mm(p) / width, {}});
-      if (!same_lens) sheet.rows.back().subtitle = "lenses below the pictures";
-    }
-    examples::SheetRow& row = sheet.rows.back();
-    row.tiles.push_back({petzval::to_srgb8(examples::with_width(p.image, width), exposure(p.image)), p.captions()});
-    if (row_title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
-  }
-  return sheet;
 }
 
 /// The exposure that clips one pixel of 5000.
@@ -111,6 +99,32 @@ float exposure_below_white(const petzval::RgbImage& image) {
   return *rank > 0 ? 1 / *rank : 1;
 }
 
+/// The picture with exposure 1 unless each picture has its own, as .exr files have.
+petzval::Rgb8Image shown(const Picture& picture, bool own_exposure) {
+  if (picture.own_exposure()) return examples::expose(picture.image).picture;
+  return petzval::to_srgb8(picture.image, own_exposure ? exposure_below_white(picture.image) : 1);
+}
+
+examples::Sheet sheet_of(std::span<const Picture> pictures, const std::string& title, std::size_t columns,
+                         bool own_exposure) {
+  examples::Sheet sheet{title, {}, {}};
+  std::string row_title;
+  for (std::size_t i = 0; i < pictures.size(); i += columns) {
+    const auto shown_pictures = pictures.subspan(i, std::min(columns, pictures.size() - i));
+    const bool same_lens = std::ranges::all_of(
+        shown_pictures, [&](const Picture& p) { return p.lens() == shown_pictures.front().lens(); });
+    const std::string lens = same_lens ? shown_pictures.front().lens() : "";
+    examples::SheetRow& row = sheet.rows.emplace_back(examples::SheetRow{
+        same_lens && lens == row_title ? "" : lens, same_lens ? "" : "lenses below the pictures", {}, columns});
+    row_title = lens;
+    for (const Picture& p : shown_pictures) {
+      row.tiles.push_back({shown(p, own_exposure), p.captions(), film_width_mm(p)});
+      if (!same_lens && p.rendered()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
+    }
+  }
+  return sheet;
+}
+
 /// The square part of a picture, as high as the picture, around a column.
 petzval::RgbImage square_at(const petzval::RgbImage& image, double x) {
   const int size = std::min(image.width, image.height);
@@ -122,18 +136,17 @@ petzval::RgbImage square_at(const petzval::RgbImage& image, double x) {
 
 /// Rows with the highlights of three balls, enlarged: a tile for each picture.
 void add_highlights(examples::Sheet& sheet, const std::vector<Picture>& pictures) {
-  const int size = examples::tile_pixels(pictures.size());
   for (const auto& [title, ball] :
        {std::pair{"in the centre", 6u}, std::pair{"half way to the edge", 9u}, std::pair{"at the edge", 12u}}) {
-    examples::SheetRow row{title, "", 0, {}};
+    examples::SheetRow row{title, ""};
     for (const Picture& p : pictures) {
       const auto highlights = renderer::ball_highlights(p.image);
       if (highlights.size() <= ball || !highlights[ball]) continue;
       const Json& mm = p.job.at("focus_mm");
       const petzval::RgbImage part = square_at(p.image, highlights[ball]->x);
-      row.pixel_mm = film_width_mm(p) / p.image.width * part.width / size;
-      row.tiles.push_back({petzval::to_srgb8(examples::with_width(part, size), exposure_below_white(p.image)),
-                           {examples::focus_caption(mm.is_null() ? INFINITY : mm.get<double>())}});
+      row.tiles.push_back({petzval::to_srgb8(part, exposure_below_white(p.image)),
+                           {examples::focus_caption(mm.is_null() ? INFINITY : mm.get<double>())},
+                           film_width_mm(p) / p.image.width * part.width});
     }
     if (!row.tiles.empty()) sheet.rows.push_back(std::move(row));
   }
@@ -161,13 +174,15 @@ std::string ball_table(const std::vector<Picture>& pictures) {
 }  // namespace
 
 int commands::sheet(int argc, char** argv) {
-  std::vector<std::string> folders;
+  std::vector<std::string> paths;
   std::string title = "Scenes through lenses", out, balls;
   std::uint32_t columns = 1;
   examples::App app(
-      "Lays out pictures of petzval render on a sheet, in rows from the left. All pictures must have the same size.",
+      "Lays out pictures on a sheet, in rows from the left: pictures of petzval render with lens and focus, and "
+      "picture files with their names. Films of known sizes have one scale in a row; other pictures are equally wide.",
       "petzval sheet");
-  app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
+  app.add_option("PICTURE", paths, "folders with picture.exr and render.json, and picture files (.png, .exr)")
+      ->required();
   examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures per row");
   app.add_option("--title", title, "title of the sheet")->capture_default_str();
   examples::add_out_file(
@@ -177,19 +192,26 @@ int commands::sheet(int argc, char** argv) {
       "outward skewness; x_mm: position of the ball; beside: light of other spots near the ball, relative to the "
       "highlight; trusted: yes for complete highlights of at least 6 pixels that are far brighter than other spots",
       "CSV", "--balls");
-  examples::add_out_file(app, out, "PNG to write", "FILE.png")->required();
+  examples::add_out_file(app, out, "SVG to write", "FILE.svg")->required();
   return examples::run(app, argc, argv, [&] {
-    examples::want_ending("--out", out, ".png");
+    examples::want_ending("--out", out, ".svg");
     std::vector<Picture> pictures;
-    for (const std::string& folder : folders) pictures.push_back(read(folder));
-    const auto exposure = [&balls](const petzval::RgbImage& image) {
-      return balls.empty() ? 1.0f : exposure_below_white(image);
-    };
-    examples::Sheet sheet = sheet_of(pictures, title, columns, exposure);
-    sheet.notes = {balls.empty() ? "petzval render: white is radiance 1 in the centre; scale bars on the film."
-                                 : "petzval render: each picture has its own exposure; scale bars on the film."};
+    bool rendered = false, exr = false;
+    for (const std::string& path : paths) {
+      const Picture& p = pictures.emplace_back(read(path));
+      if (!balls.empty() && !p.rendered())
+        throw petzval::Error("--balls: " + path + " is a file; must be a folder of petzval render");
+      rendered |= p.rendered(), exr |= p.own_exposure();
+    }
+    examples::Sheet sheet = sheet_of(pictures, title, columns, !balls.empty());
+    if (rendered) {
+      sheet.notes.push_back(balls.empty()
+                                ? "petzval render: white is radiance 1 in the centre; scale bars on the film."
+                                : "petzval render: each picture has its own exposure; scale bars on the film.");
+    }
+    if (exr) sheet.notes.emplace_back("Picture files in EXR: each has its own exposure.");
     if (!balls.empty()) add_highlights(sheet, pictures);
-    examples::write_png(examples::draw_sheet(sheet), out);
+    examples::write_svg(examples::draw_sheet(sheet), out);
     std::cout << out << '\n';
     if (balls.empty()) return;
     examples::write_text(balls, ball_table(pictures));

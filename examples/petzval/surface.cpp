@@ -29,9 +29,8 @@
 #include "support/files.hpp"
 #include "support/focal_surface_setup.hpp"
 #include "support/load_lens.hpp"
+#include "support/map_sheet.hpp"
 #include "support/number_csv.hpp"
-#include "support/picture_files.hpp"
-#include "support/surface_sheet.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -108,8 +107,8 @@ std::string distance_in_words(double inverse) {
 std::string stops_in_words(double stops) { return number(stops, 4) + " stops"; }
 
 /// Round distances within a range of inverse distances, farthest first, with a minimum spacing.
-std::vector<examples::SurfaceMap::Level> distance_levels(double least, double most) {
-  std::vector<examples::SurfaceMap::Level> result;
+std::vector<examples::MapLevel> distance_levels(double least, double most) {
+  std::vector<examples::MapLevel> result;
   constexpr double lines = 12;
   const auto add = [&](double inverse, const std::string& words) {
     const double before = result.empty() ? least : result.back().value;
@@ -125,8 +124,8 @@ std::vector<examples::SurfaceMap::Level> distance_levels(double least, double mo
   return result;
 }
 
-std::vector<examples::SurfaceMap::Level> stop_levels(double least, double most) {
-  std::vector<examples::SurfaceMap::Level> result;
+std::vector<examples::MapLevel> stop_levels(double least, double most) {
+  std::vector<examples::MapLevel> result;
   double step = 0.25;
   while ((most - least) / step > 10) step *= 2;
   for (double stops = std::ceil(least / step) * step; stops < most; stops += step) {
@@ -135,9 +134,9 @@ std::vector<examples::SurfaceMap::Level> stop_levels(double least, double most) 
   return result;
 }
 
-petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
-  const petzval::Film film = examples::with_pixels(surface.film(), 900);
-  examples::SurfaceSheet sheet;
+std::string map_of(const Surface& surface, const Options& options) {
+  const petzval::Film film = examples::with_pixels(surface.film(), 300);
+  examples::MapSheet sheet{.scale = 3};
   sheet.title = "Focal surface";
   sheet.subtitle = surface.lens().name() + " at f/" + number(petzval::real_f_number(surface.lens()), 3) + ", " +
                    std::to_string(surface.points().size()) + (surface.points().size() == 1 ? " point, " : " points, ") +
@@ -149,8 +148,16 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     auto levels = levels_of(*least, *most);
     if (levels.empty()) title += ": constant, " + in_words(*least);
-    auto& map = sheet.maps.emplace_back(
-        examples::SurfaceMap{std::move(title), std::move(values), std::move(levels), low, high, {}});
+    // From deep blue through green and yellow to near white, of increasing lightness.
+    auto& map = sheet.maps.emplace_back(examples::Map{
+        .title = std::move(title),
+        .low = *least,
+        .high = *most,
+        .colours = {{46, 30, 96}, {44, 84, 150}, {38, 134, 142}, {82, 178, 116}, {184, 210, 80}, {250, 236, 150}},
+        .contours = levels,
+        .ticks = levels,
+        .scale_words = {low, "", high}});
+    map.values = std::move(values);
     for (std::size_t i = 0; i < surface.points().size(); ++i) {
       const petzval::FocalPoint& point = surface.points()[i];
       const petzval::Vec2<double> at = film.raster(point.film_point);
@@ -165,7 +172,7 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
   }
   const std::string points_file = std::filesystem::path(options.surface.points_file).filename().string();
   sheet.notes = {"Points have their numbers in " + points_file + "; the picture is upright."};
-  return examples::draw_surface_sheet(sheet);
+  return examples::draw_map_sheet(sheet);
 }
 
 /// Answers to queries x_px,y_px. At a focus point, blur_px for an object at the point's own distance is the requested
@@ -185,7 +192,7 @@ std::string answers(const Surface& surface, const std::string& queries_file) {
 
 void write(const Options& options) {
   const Surface surface(options);
-  const petzval::Rgb8Image map = map_of(surface, options);
+  const std::string map = map_of(surface, options);
   const std::string side = petzval::focal_surface_figure(
       {surface.lens().name(),
        "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + number(surface.film().width_mm) + " x " +
@@ -197,8 +204,8 @@ void write(const Options& options) {
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
   const auto say = [&](const char* name) { std::cout << (folder / name).string() << '\n'; };
-  examples::write_png(map, folder / "surface.png");
-  say("surface.png");
+  examples::write_svg(map, folder / "surface.svg");
+  say("surface.svg");
   examples::write_text(folder / "side.svg", side);
   say("side.svg");
   petzval::write_pfm(surface.film().columns, surface.film().rows, std::vector<float>(inverses.begin(), inverses.end()),
@@ -214,7 +221,7 @@ void write(const Options& options) {
 int commands::surface(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png (distance "
+      "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.svg (distance "
       "over the picture, and extent of the depth of field if points give one), side.svg (section of lens, film and "
       "surface), surface.pfm (1/distance of each pixel in 1/mm, rows from the bottom as in all PFM files) and with "
       "--table answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "

@@ -21,14 +21,13 @@
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus_point.hpp"
-#include "petzval/image/image.hpp"
 #include "support/blur_map.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/focus_json.hpp"
+#include "support/map_sheet.hpp"
 #include "support/movement_setup.hpp"
-#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -303,38 +302,78 @@ std::string side_view(const Result& result) {
                                .points = points});
 }
 
+/// A blur with its sign, for example "+12 µm".
+std::string blur_in_words(double mm) {
+  const double um = std::round(1e4 * mm) / 10 + 0.0;
+  const double shown = std::abs(um) >= 10 ? std::round(um) : um;
+  return (shown < 0 ? "\u2212" : shown > 0 ? "+" : "") + number(std::abs(shown)) + " \u00b5m";
+}
+
+/// The blur at each pixel of a film. Blue: nearer than the plane of focus; red: beyond it; white: sharp; grey: no
+/// light.
+examples::Map map_of(const examples::BlurMap& blurs, const petzval::Film& film, double scale_mm, const Result& result,
+                     double Point::*blur) {
+  examples::Map map{.values = blurs,
+                    .low = -scale_mm,
+                    .high = scale_mm,
+                    .colours = {{8, 32, 84},
+                                {17, 58, 127},
+                                {26, 84, 170},
+                                {102, 141, 198},
+                                {179, 198, 227},
+                                {255, 255, 255},
+                                {233, 183, 181},
+                                {212, 110, 107},
+                                {190, 38, 32},
+                                {141, 23, 26},
+                                {92, 8, 20}},
+                    .contours = {{sharp_mm(result.lens.film)}},
+                    .scale_words = {"nearer than the plane of focus", "sharp", "beyond the plane of focus"},
+                    .both_signs = true};
+  for (int k = -2; k <= 2; ++k) map.ticks.push_back({scale_mm * k / 2, blur_in_words(scale_mm * k / 2)});
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    const Point& p = result.points[i];
+    const auto where = examples::on_film(result.lens.ideal, film, p.target.point);
+    if (!where) continue;
+    const petzval::Vec2<double> at = film.raster(*where);
+    map.points.push_back({at.x, at.y, i + 1, std::isnan(p.*blur) ? "" : blur_in_words(p.*blur), p.serves()});
+  }
+  return map;
+}
+
 /// The pictures before and after at one scale; empty if no point is on the scene surface.
-std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
+std::vector<std::string> blur_pictures(const Result& result) {
   if (std::ranges::none_of(result.points, &Point::shows)) return {};
   const petzval::IdealLens& ideal = result.lens.ideal;
   const examples::PointScene scene(ideal, scene_points(result.points, &Point::shows));
-  const petzval::Film films[]{examples::with_pixels(result.before.film), examples::with_pixels(result.after.film)};
+  constexpr int map_pixels = 135;
+  const petzval::Film films[]{examples::with_pixels(result.before.film, map_pixels),
+                              examples::with_pixels(result.after.film, map_pixels)};
   const petzval::Lens* const exact = result.lens.exact ? &*result.lens.lens : nullptr;
   std::vector<examples::BlurMap> maps;
   for (const petzval::Film& film : films) {
     maps.push_back(examples::blur_map(film, scene, ideal, exact, examples::threads()));
   }
 
-  examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.film)};
+  const double scale_mm = examples::scale_of(maps);
+  examples::MapSheet sheet{.scale = 8};
   sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.film.width_mm) +
                    " x " + number(result.lens.film.height_mm) + " mm; picture upright";
   sheet.notes = {"Signed diameter of the blur on the film" +
                      std::string(exact ? ": the uniform disc with the RMS radius of the traced rays." : ".") +
-                     " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have the same scale.",
+                     " Thin lines: " + number(1e3 * sharp_mm(result.lens.film), 3) +
+                     " \u00b5m. Both pictures have the same scale.",
                  "Circles: the focus points and their blurs (grey: not used). Between them 1/distance is "
                  "interpolated."};
   const bool upright = !result.after.film.tilted();
   const std::string titles[]{"Before: upright film, focused on the points",
                              "After: film " + film_in_words(result.after.film)};
-  std::vector<petzval::Rgb8Image> sheets;
+  std::vector<std::string> sheets;
   for (std::size_t k = 0; k < 2; ++k) {
     sheet.title = titles[k] + (k == 1 && upright ? ", as before" : "");
-    sheet.points.clear();
-    for (const Point& p : result.points) {
-      sheet.points.push_back(
-          {examples::on_film(ideal, films[k], p.target.point), k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
-    }
-    sheets.push_back(examples::draw_blur_sheet(maps[k], films[k], sheet));
+    sheet.width = films[k].columns, sheet.height = films[k].rows;
+    sheet.maps = {map_of(maps[k], films[k], scale_mm, result, k == 0 ? &Point::before_mm : &Point::predicted_mm)};
+    sheets.push_back(examples::draw_map_sheet(sheet));
   }
   return sheets;
 }
@@ -352,7 +391,7 @@ int commands::tilt(int argc, char** argv) {
       "predicted: by the fitted model; traced: by 4096 exact rays per point (fewer for more than 1024 points), for "
       "every model if LENS is given. Plane and lines of the real model follow from its cardinal points. If the points "
       "do not determine a plane, the result has the smallest tilt, and status is least_tilt.\n"
-      "Writes NAME_side.svg, NAME_before.png and NAME_after.png into DIR.",
+      "Writes NAME_side.svg, NAME_before.svg and NAME_after.svg into DIR.",
       "petzval tilt");
   examples::add_movement_options(app, options);
   app.add_option("--points", options.points_file, "JSON file of points to focus on")->type_name("FILE")->required();
@@ -376,8 +415,8 @@ int commands::tilt(int argc, char** argv) {
     };
     examples::write_text(named("_side.svg"), svg);
     if (!pictures.empty()) {
-      examples::write_png(pictures[0], named("_before.png"));
-      examples::write_png(pictures[1], named("_after.png"));
+      examples::write_svg(pictures[0], named("_before.svg"));
+      examples::write_svg(pictures[1], named("_after.svg"));
     }
     if (options.json) {
       std::cout << to_json(result, options, files).dump(1) << '\n';

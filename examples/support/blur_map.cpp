@@ -6,14 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "petzval/focus/autofocus.hpp"
+
 namespace examples {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t at(int x, int y, int width) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-}
 
 double ideal_blur(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                   const petzval::FilmPoint& point) {
@@ -52,22 +50,6 @@ std::vector<double> exact_blurs(const petzval::Film& film, const PointScene& sce
   return result;
 }
 
-/// Interpolates between the nodes of a grid. Magnitude and sign are interpolated separately because the blur of a real
-/// lens is not 0 where its sign changes.
-double between(const std::vector<double>& nodes, int columns, double x, double y) {
-  const int i = static_cast<int>(x), j = static_cast<int>(y);
-  const double u = x - i, v = y - j;
-  const double values[]{nodes[at(i, j, columns)], nodes[at(i + 1, j, columns)], nodes[at(i, j + 1, columns)],
-                        nodes[at(i + 1, j + 1, columns)]};
-  const double weights[]{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-  double sum = 0, size = 0;
-  for (int k = 0; k < 4; ++k) {
-    sum += weights[k] * values[k];
-    size += weights[k] * std::abs(values[k]);
-  }
-  return std::copysign(size, sum) + (std::isnan(sum) ? none : 0);
-}
-
 }  // namespace
 
 petzval::Film with_pixels(petzval::Film film, int longer_side) {
@@ -80,31 +62,20 @@ petzval::Film with_pixels(petzval::Film film, int longer_side) {
 
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::Lens* exact, int threads) {
-  constexpr int step = 8;  // pixels between nodes; the last node is beyond the last pixel
-  const int width = film.columns, height = film.rows, columns = width / step + 2, rows = height / step + 2;
   std::vector<petzval::FilmPoint> points;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) points.push_back(film.point(step * column, step * row));
+  for (int y = 0; y < film.rows; ++y) {
+    for (int x = 0; x < film.columns; ++x) points.push_back(film.point(x + 0.5, y + 0.5));
   }
-  std::vector<double> nodes;
-  if (exact) {
-    nodes = exact_blurs(film, scene, *exact, points, threads);
-  } else {
-    for (const petzval::FilmPoint& point : points) nodes.push_back(ideal_blur(film, scene, lens, point));
-  }
-  BlurMap result{width, height, {}};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      result.diameter_mm.push_back(between(nodes, columns, (x + 0.5) / step, (y + 0.5) / step));
-    }
-  }
+  if (exact) return exact_blurs(film, scene, *exact, points, threads);
+  BlurMap result;
+  for (const petzval::FilmPoint& point : points) result.push_back(ideal_blur(film, scene, lens, point));
   return result;
 }
 
 double scale_of(std::span<const BlurMap> maps) {
   std::vector<double> sizes;
   for (const BlurMap& map : maps) {
-    for (const double d : map.diameter_mm) {
+    for (const double d : map) {
       if (std::isfinite(d)) sizes.push_back(std::abs(d));
     }
   }

@@ -171,10 +171,7 @@ std::string short_number(double value) { return value < 100 ? number(value, 3) :
 
 }  // namespace
 
-std::string white_caption(const Exposed& exposed) { return "white " + short_number(exposed.white_per_mm2) + " / mm²"; }
-
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light) {
-  Exposed exposed = expose(irradiance(image.psf, light));
+Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, Exposed exposed) {
   std::vector<std::string> captions{focus_caption(focus_mm)};
   if (image.throughput > 0) {
     captions.push_back("radius " + short_number(image.size.max_radius) + " mm");
@@ -182,8 +179,8 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval
   } else {
     captions.emplace_back("no light passes");
   }
-  captions.push_back(white_caption(exposed));
-  return {std::move(exposed.picture), std::move(captions)};
+  captions.push_back("white " + short_number(exposed.white_per_mm2) + " / mm²");
+  return {std::move(exposed.picture), std::move(captions), image.psf.pixels * image.psf.pixel_mm};
 }
 
 std::vector<std::string> bokeh_notes() {

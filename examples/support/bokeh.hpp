@@ -74,14 +74,11 @@ struct Exposed {
 };
 Exposed expose(const petzval::RgbImage& image, double exposure = 1);
 
-/// "white 12 / mm²".
-std::string white_caption(const Exposed& exposed);
-
 /// "focus 800 mm" or "focus infinity".
 std::string focus_caption(double focus_mm);
 
 /// A tile of a contact sheet: picture, focus distance, size of the blur, exposure.
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light = white_light("D65"));
+Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, Exposed exposed);
 
 /// Notes that explain the lines below a tile.
 std::vector<std::string> bokeh_notes();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <span>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,14 +13,15 @@ namespace examples {
 struct Tile {
   petzval::Rgb8Image picture;
   std::vector<std::string> captions;
+  double width_mm = 0;  ///< of the picture on the film; 0: unknown
 };
 
-/// Tiles side by side at one scale: a pixel is `pixel_mm` of film. 0: no scale bar.
+/// Tiles side by side, at one scale if all their widths are known.
 struct SheetRow {
   std::string title;
   std::string subtitle;
-  double pixel_mm = 0;
-  std::vector<Tile> tiles;
+  std::vector<Tile> tiles = {};
+  std::size_t columns = 0;  ///< 0: one for each tile
 };
 
 struct Sheet {
@@ -30,16 +30,12 @@ struct Sheet {
   std::vector<std::string> notes;  ///< lines at the foot
 };
 
-/// Width of the tiles that fill a row of a sheet with this many columns, in pixels.
-int column_pixels(std::size_t columns);
-/// The same for square tiles: at most 400.
-inline int tile_pixels(std::size_t columns) { return std::min(400, column_pixels(columns)); }
+/// Size of square pictures that fill the columns of a row: at most 400 pixels, at least 160 for the captions.
+int tile_pixels(std::size_t columns);
 
-/// Enlarges or reduces a picture to a width, by linear interpolation or weighted means.
-petzval::RgbImage with_width(const petzval::RgbImage& picture, int width);
-
-/// Lays out the tiles on a dark sheet with captions and a scale bar. The tiles of a row must have one size. All sheets
-/// have the same width unless a row needs more. A row without title and subtitle continues the row above.
-petzval::Rgb8Image draw_sheet(const Sheet& sheet);
+/// Lays out the tiles on a dark sheet with captions and a scale bar, as an SVG file. The pictures of a row are centred
+/// in equal columns, and captions wrap at the width of the column. All sheets have the same width unless a row needs
+/// more. A row without title and subtitle continues the row above.
+std::string draw_sheet(const Sheet& sheet);
 
 }  // namespace examples

@@ -76,34 +76,16 @@ Json index(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const 
   return json;
 }
 
-/// The irradiance of a kernel as a grey picture at a given scale.
-petzval::RgbImage picture(const petzval::PsfKernel& kernel, int side, double pixel_mm) {
-  petzval::RgbImage image(side, side);
-  constexpr int samples = 4;  // along each side of a pixel
-  const auto source = [&](int i, int k) {
-    const double pixel_position =
-        (i + (k + 0.5) / samples - side / 2.0) * pixel_mm / kernel.pixel_mm + kernel.pixels / 2.0;
-    return static_cast<int>(std::floor(pixel_position));
-  };
-  const auto inside = [&](int i) { return i >= 0 && i < kernel.pixels; };
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      float sum = 0;
-      for (int k = 0; k < samples * samples; ++k) {
-        const int column = source(x, k % samples), row = source(y, k / samples);
-        if (inside(column) && inside(row)) sum += kernel.light[static_cast<std::size_t>(row * kernel.pixels + column)];
-      }
-      const auto area = static_cast<float>(samples * samples * kernel.pixel_mm * kernel.pixel_mm);
-      std::fill_n(image.pixel(x, y), 3, sum / area);
-    }
-  }
-  return image;
+/// The irradiance of a kernel in grey.
+petzval::Rgb8Image picture(const petzval::PsfKernel& kernel) {
+  petzval::RgbImage image(kernel.pixels, kernel.pixels);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = kernel.light[i / 3];
+  return expose(image).picture;
 }
 
 /// Fields by distances, at the wavelength nearest to the d line and the largest stop.
 Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& parts) {
   const auto& axes = job.axes();
-  const int size = tile_pixels(axes.fields_deg.size());
   const double nm = *std::min_element(axes.wavelengths_nm.begin(), axes.wavelengths_nm.end(), [](double a, double b) {
     return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
   });
@@ -122,15 +104,13 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
         row.push_back(petzval::from_exr_part(parts[node]));
       }
     }
-    double width = 0;
-    for (const auto& [point, kernel] : row) width = std::max(width, kernel.pixels * kernel.pixel_mm);
     SheetRow shown{.title = std::isinf(distance) ? "a light at infinity" : "a light at " + number(distance) + " mm",
                    .subtitle = number(nm) + " nm, f/" + number(axes.f_numbers.front(), 3),
-                   .pixel_mm = 1.15 * width / size,  // margin for the scale bar
                    .tiles = {}};
     for (const auto& [point, kernel] : row) {
-      shown.tiles.push_back({expose(picture(kernel, size, shown.pixel_mm)).picture,
-                             {number(point.field_deg) + "°", "light " + number(kernel.total, 3)}});
+      shown.tiles.push_back({picture(kernel),
+                             {number(point.field_deg) + "°", "light " + number(kernel.total, 3)},
+                             kernel.pixels * kernel.pixel_mm});
     }
     sheet.rows.push_back(std::move(shown));
   }
@@ -262,11 +242,11 @@ std::vector<fs::path> write_psf_set(const PsfJob& job, const std::vector<petzval
   const auto sibling = [&](const char* extension) { return fs::path(file).replace_extension(extension); };
   Json json = index(job, parts, file);
   if (interpolation_error) json["interpolation_error"] = *interpolation_error;
-  const petzval::Rgb8Image sheet = draw_sheet(contact_sheet(job, parts));
+  const std::string sheet = draw_sheet(contact_sheet(job, parts));
   petzval::write_exr(parts, file);
   write_text(sibling(".json"), json.dump(1) + '\n');
-  petzval::write_png(sheet, sibling(".png"));
-  return {file, sibling(".json"), sibling(".png")};
+  write_text(sibling(".svg"), sheet);
+  return {file, sibling(".json"), sibling(".svg")};
 }
 
 }  // namespace examples

@@ -52,7 +52,7 @@ class PsfJob {
   petzval::PsfSet::Axes axes_;
 };
 
-/// Writes the set as one EXR with an index (.json) and a contact sheet (.png) next to it. Returns the three paths. The
+/// Writes the set as one EXR with an index (.json) and a contact sheet (.svg) next to it. Returns the three paths. The
 /// index includes interpolation_error if given.
 std::vector<std::filesystem::path> write_psf_set(const PsfJob& job, const std::vector<petzval::ExrPart>& parts,
                                                  const std::filesystem::path& file,

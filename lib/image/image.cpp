@@ -176,11 +176,10 @@ std::string png_chunk(const std::string& type, const std::string& data) {
   return four_bytes(data.size()) + body + four_bytes(crc);
 }
 
-}  // namespace
-
-void write_png(const Rgb8Image& image, const std::filesystem::path& file,
-               const std::map<std::string, std::string>& texts) {
-  validate(image, file.string());
+/// The bytes of a PNG file. `where`: name of the picture, for messages.
+std::string png_bytes(const Rgb8Image& image, const std::map<std::string, std::string>& texts,
+                      const std::string& where) {
+  validate(image, where);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -190,19 +189,28 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file,
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
-    throw Error(file.string() + ": " + png.message);
+    throw Error(where + ": " + png.message);
   }
   bytes.resize(size);
   std::string chunks;
   for (const auto& [keyword, text] : texts) {
     if (keyword.empty() || keyword.size() > 79) {
-      throw Error(file.string() + ": keyword = \"" + keyword + "\"; must have 1 to 79 bytes");
+      throw Error(where + ": keyword = \"" + keyword + "\"; must have 1 to 79 bytes");
     }
     chunks += png_chunk("tEXt", keyword + '\0' + text);
   }
   constexpr std::size_t after_head = 33;  // signature and IHDR
   bytes.insert(after_head, chunks);
-  write_file(bytes, file);
+  return bytes;
+}
+
+}  // namespace
+
+std::string to_png(const Rgb8Image& image) { return png_bytes(image, {}, "PNG"); }
+
+void write_png(const Rgb8Image& image, const std::filesystem::path& file,
+               const std::map<std::string, std::string>& texts) {
+  write_file(png_bytes(image, texts, file.string()), file);
 }
 
 RgbImage desqueezed(const RgbImage& image, double squeeze) {

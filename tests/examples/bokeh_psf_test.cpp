@@ -61,7 +61,7 @@ TEST_F(BokehPsf, KeepsAllTheLight) {
     EXPECT_NEAR(sum, throughput, 1e-6);
     EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_focus_" + names[i] + "mm.png")).starts_with("\x89PNG"));
   }
-  EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_bokeh.png")).starts_with("\x89PNG"));
+  EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_bokeh.svg")).starts_with("<svg"));
 }
 
 TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {

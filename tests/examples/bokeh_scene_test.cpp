@@ -390,16 +390,33 @@ TEST_F(BokehScene, GuidesOfAPlaneAreItsAlbedoNormalAndDepth) {
 TEST_F(BokehScene, PicturesAreLaidOutOnSheets) {
   render("a"), render("b", {"--focus", "1500"});
   const Outcome done =
-      run("sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"), "--balls", path("balls.csv")});
+      run("sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.svg"), "--balls", path("balls.csv")});
   EXPECT_EQ(done.status, 0) << done.err;
-  EXPECT_TRUE(read(path("sheet.png")).starts_with("\x89PNG"));
+  EXPECT_GE(pictures_in(path("sheet.svg")), 2u);
+  EXPECT_NE(read(path("sheet.svg")).find(">focus 1500 mm"), std::string::npos);
   EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));
-  render("small", {"--size", "36x24"});
-  expect_failure("sheet", {path("a"), path("small"), "--out", path("c.png")}, {"small", 36, 24});
-  expect_failure("sheet", {path("a"), "--out", path("c.jpg")}, {"c.jpg", ".png"});
-  expect_failure("sheet", {path("nothing"), "--out", path("c.png")}, {"nothing"});
+  for (const char* wrong : {"c.jpg", "c.png"}) {
+    expect_failure("sheet", {path("a"), "--out", path(wrong)}, {wrong, ".svg"});
+  }
+  expect_failure("sheet", {path("nothing"), "--out", path("c.svg")}, {"nothing"});
   write("a/render.json", "{}");
-  expect_failure("sheet", {path("a"), "--out", path("c.png")}, {"render.json"});
+  expect_failure("sheet", {path("a"), "--out", path("c.svg")}, {"render.json"});
+}
+
+TEST_F(BokehScene, SheetsTakePictureFilesOfAnySize) {
+  render("a"), render("small", {"--size", "36x24"});
+  write("a & b \xff.exr", read(path("a/picture.exr")));
+  const Outcome done = run("sheet", {path("a"), path("small"), path("a/picture.png"), path("a & b \xff.exr"),
+                                     "--columns", "3", "--out", path("sheet.svg")});
+  EXPECT_EQ(done.status, 0) << done.err;
+  const std::string svg = read(path("sheet.svg"));
+  EXPECT_EQ(pictures_in(path("sheet.svg")), 4u);
+  for (const char* name : {">picture.png<", ">a &amp; b \xEF\xBF\xBD.exr<"}) {
+    EXPECT_NE(svg.find(name), std::string::npos) << name;
+  }
+  expect_failure("sheet", {path("a/picture.png"), "--out", path("c.svg"), "--balls", path("balls.csv")},
+                 {"--balls", "picture.png", "folder"});
+  expect_failure("sheet", {path("a/render.json"), "--out", path("c.svg")}, {"render.json", ".png", ".exr"});
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ class ChromaticBokeh : public Programs {
       EXPECT_TRUE(!line.starts_with("/") || std::filesystem::exists(line)) << line;
     }
     EXPECT_TRUE(outcome.out.starts_with("wavelength   paraxial focus   sharpest film")) << outcome.out;
-    EXPECT_TRUE(read(path(out + '/' + id + "_chromatic.png")).starts_with("\x89PNG"));
+    EXPECT_TRUE(read(path(out + '/' + id + "_chromatic.svg")).starts_with("<svg"));
     return read_json(path(out + '/' + id + "_chromatic.json"));
   }
 

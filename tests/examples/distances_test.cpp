@@ -164,7 +164,7 @@ TEST_F(Distances, EveryProgramRefusesUnwritableOutputs) {
     expect_failure(arguments[0], out, {"--out", taken});
   }
   expect_failure("trace", {file, "--table", path("rays.csv"), "--out", path("none/traced.csv")}, {"--out"});
-  expect_failure("wu_figure7", {"--out", path("none/figure.png")}, {"--out"});
+  expect_failure("wu_figure7", {"--out", path("none/figure.svg")}, {"--out"});
   expect_failure("convert", {file, path("none/lens.zmx")}, {"OUT"});
   EXPECT_FALSE(std::filesystem::exists(path("none")));
 }

@@ -15,8 +15,8 @@ class ExpressiveLensProgram : public Programs {
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto outcome = run("expressive", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(lines(outcome.out), (std::vector{path(out + "/highlights.png"), path(out + "/expressive.json")}));
-    EXPECT_TRUE(read(path(out + "/highlights.png")).starts_with("\x89PNG"));
+    EXPECT_EQ(lines(outcome.out), (std::vector{path(out + "/highlights.svg"), path(out + "/expressive.json")}));
+    EXPECT_TRUE(read(path(out + "/highlights.svg")).starts_with("<svg"));
     return read_json(path(out + "/expressive.json"));
   }
 };

@@ -67,9 +67,9 @@ TEST_F(FocalSurfaceProgram, QueriesEqualTheValuesOfThePoints) {
   write("q.csv", "x_px,y_px\n60.5,100.5\n220.5,75.5\n150.5,50.5\n150.5,175.5\n10,190\n");
   const auto outcome = run("surface", arguments({"--table", path("q.csv")}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(lines(outcome.out), (std::vector{path("out/surface.png"), path("out/side.svg"), path("out/surface.pfm"),
+  EXPECT_EQ(lines(outcome.out), (std::vector{path("out/surface.svg"), path("out/side.svg"), path("out/surface.pfm"),
                                              path("out/answers.csv")}));
-  EXPECT_TRUE(read(path("out/surface.png")).starts_with("\x89PNG"));
+  EXPECT_TRUE(read(path("out/surface.svg")).starts_with("<svg"));
   EXPECT_NE(read(path("out/side.svg")).find("</svg>"), std::string::npos);
   const std::string csv = read(path("out/answers.csv"));
   EXPECT_EQ(lines(csv)[0], "x_px,y_px,distance_mm,extent_stops,blur_px");

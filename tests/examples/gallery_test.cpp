@@ -46,12 +46,10 @@ class Gallery : public Programs {
         "}\n"
         "gallery \"$folder/out\" \"$folder/programs\" pictures Title Lead\n");
   }
-  /// Width in the header of a PNG file.
-  static int width(const std::string& png) {
-    int result = 0;
-    for (int i = 16; i < 20; ++i)
-      result = 256 * result + static_cast<unsigned char>(png.at(static_cast<std::size_t>(i)));
-    return result;
+  /// True for an SVG file with the width of all sheets.
+  static bool is_sheet(const std::string& file) {
+    const std::string svg = read(file);
+    return svg.starts_with("<svg") && svg.find(" width=\"1280\"") < svg.find('\n') && svg.ends_with("</svg>\n");
   }
   std::string page() const { return read(path("out/index.html")); }
 };
@@ -124,11 +122,11 @@ TEST_F(Gallery, FlagsOfAllCommandsExist) {
 }
 
 TEST_F(Gallery, DrawsFigure7) {
-  const auto outcome = run("wu_figure7", {"--rays", "1024", "--out", path("figure.png")});
+  const auto outcome = run("wu_figure7", {"--rays", "1024", "--out", path("figure.svg")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
-  EXPECT_EQ(width(read(path("figure.png"))), 1280);
-  expect_failure("wu_figure7", {"--out", path("figure.jpg")}, {"figure.jpg", ".png"});
+  EXPECT_TRUE(is_sheet(path("figure.svg")));
+  EXPECT_EQ(pictures_in(path("figure.svg")), 20u);
+  expect_failure("wu_figure7", {"--out", path("figure.jpg")}, {"figure.jpg", ".svg"});
 }
 
 TEST_F(Gallery, DrawsTheShapesOfBokeh) {
@@ -136,9 +134,8 @@ TEST_F(Gallery, DrawsTheShapesOfBokeh) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::vector<std::string> files;
   for (const char* name : {"blades", "cats_eyes", "lens_ratio", "weights", "maps"}) {
-    files.push_back(path(std::string("shapes/bokeh_") + name + ".png"));
-    EXPECT_TRUE(read(files.back()).starts_with("\x89PNG"));
-    EXPECT_EQ(width(read(files.back())), 1280);  // all sheets
+    files.push_back(path(std::string("shapes/bokeh_") + name + ".svg"));
+    EXPECT_TRUE(is_sheet(files.back()));
   }
   EXPECT_EQ(lines(outcome.out), files);
 }

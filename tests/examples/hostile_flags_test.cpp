@@ -50,7 +50,7 @@ const std::vector<Command> commands = {
 #ifdef PETZVAL_TEST_HAS_render
     {"render", {"--scene", "balls", "LENS", "--focus", "1000", "--size", "8x8", "--spp", "1", "--out", "@out"}},
     {"render merge", {"@shards", "--out", "@out"}},
-    {"sheet", {"@out", "--out", "@out.png"}},
+    {"sheet", {"@out", "--out", "@out.svg"}},
 #endif
 #ifdef PETZVAL_TEST_HAS_blur
     {"blur", {"--scene", "town", "--size", "8x8", "LENS", "--focus", "3000", "--out", "@out"}},

@@ -240,12 +240,12 @@ TEST_F(Petzval, PicturesKeepTheCommand) {
                           "--threads", threads})
                   .status,
               0);
-    return read(path(name) + "/double_gauss_52mm_f1.8_bokeh.png");
+    return read(path(name) + "/double_gauss_52mm_f1.8_bokeh.svg");
   };
-  const std::string png = draw("a", "1");
-  EXPECT_NE(png.find("petzval psf double_gauss_52mm_f1.8 --at 5m --focus 1m --rays 512"), std::string::npos);
-  EXPECT_NE(png.find("petzval " PETZVAL_VERSION), std::string::npos);
-  EXPECT_EQ(png, draw("b", "2"));
+  const std::string svg = draw("a", "1");
+  EXPECT_NE(svg.find("petzval psf double_gauss_52mm_f1.8 --at 5m --focus 1m --rays 512"), std::string::npos);
+  EXPECT_NE(svg.find("petzval " PETZVAL_VERSION), std::string::npos);
+  EXPECT_EQ(svg, draw("b", "2"));
 }
 
 TEST_F(Petzval, QuietSaysNothing) {

@@ -77,6 +77,13 @@ std::string Programs::read(const std::filesystem::path& file) {
   return text.str();
 }
 
+std::size_t Programs::pictures_in(const std::filesystem::path& file) {
+  const std::string svg = read(file), picture = "data:image/png;base64,iVBORw0KGgo";
+  std::size_t count = 0;
+  for (std::size_t at = svg.find(picture); at != std::string::npos; at = svg.find(picture, at + 1)) ++count;
+  return count;
+}
+
 nlohmann::json Programs::read_json(const std::filesystem::path& file) { return nlohmann::json::parse(read(file)); }
 
 std::vector<std::string> Programs::lines(const std::string& text) {

@@ -42,6 +42,8 @@ class Programs : public testing::Test {
 
   static std::string lens(const std::string& id) { return std::string(PETZVAL_TEST_DATA) + "/lenses/" + id + ".json"; }
   static std::string read(const std::filesystem::path& file);
+  /// The number of pictures in an SVG file.
+  static std::size_t pictures_in(const std::filesystem::path& file);
   static nlohmann::json read_json(const std::filesystem::path& file);
   static std::vector<std::string> lines(const std::string& text);
 

@@ -46,8 +46,8 @@ TEST_F(PsfSets, IndexDescribesTheSet) {
   const auto outcome = run("psf-set", set("whole", {"--check"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines(outcome.out),
-            (std::vector{path("whole/psf_set.exr"), path("whole/psf_set.json"), path("whole/psf_set.png")}));
-  EXPECT_TRUE(read(path("whole/psf_set.png")).starts_with("\x89PNG"));
+            (std::vector{path("whole/psf_set.exr"), path("whole/psf_set.json"), path("whole/psf_set.svg")}));
+  EXPECT_TRUE(read(path("whole/psf_set.svg")).starts_with("<svg"));
   const auto json = read_json(path("whole/psf_set.json"));
   const petzval::PsfSet set = petzval::read_psf_set(path("whole/psf_set.exr"));
   ASSERT_EQ(json["psfs"].size(), 12u);
@@ -85,7 +85,7 @@ TEST_F(PsfSets, ShardsEqualOneRunToTheBit) {
   auto merged = read_json(path("ab.json")), one = read_json(path("whole/psf_set.json"));
   merged.erase("exr"), one.erase("exr");
   EXPECT_EQ(merged, one);
-  EXPECT_EQ(read(path("ab.png")), read(path("whole/psf_set.png")));
+  EXPECT_EQ(read(path("ab.svg")), read(path("whole/psf_set.svg")));
   // More shards than PSFs: some shards are empty.
   for (int i = 1; i <= 13; ++i) succeed(set("many", {"--shard", std::to_string(i) + "/13"}));
   succeed({"merge", path("many"), "--out", path("many.exr")});
@@ -161,7 +161,7 @@ TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
   const auto refused = [&](std::vector<std::string> more, const std::vector<petzval::testing::Token>& tokens) {
     more.insert(more.begin(), {"query", file});
     expect_failure("psf-set", more, tokens);
-    EXPECT_FALSE(fs::exists(path("no.exr")) || fs::exists(path("no.png")));
+    EXPECT_FALSE(fs::exists(path("no.exr")) || fs::exists(path("no.svg")));
   };
   refused({"--fields", "15", "--at", "1500", "--out", path("no.exr")}, {"field_deg", 15});
   refused({"--fields", "3", "--at", "900", "--out", path("no.exr")}, {"distance_mm", 900});

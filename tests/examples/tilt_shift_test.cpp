@@ -175,10 +175,10 @@ TEST_F(TiltShift, WritesOnlyThreePictures) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::set<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(path("out"))) names.insert(file.path().filename());
-  EXPECT_EQ(names, (std::set<std::string>{"thin_lens_side.svg", "thin_lens_before.png", "thin_lens_after.png"}));
-  EXPECT_TRUE(read(path("out/thin_lens_before.png")).starts_with("\x89PNG"));
-  EXPECT_TRUE(read(path("out/thin_lens_after.png")).starts_with("\x89PNG"));
-  EXPECT_NE(read(path("out/thin_lens_before.png")), read(path("out/thin_lens_after.png")));
+  EXPECT_EQ(names, (std::set<std::string>{"thin_lens_side.svg", "thin_lens_before.svg", "thin_lens_after.svg"}));
+  EXPECT_TRUE(read(path("out/thin_lens_before.svg")).starts_with("<svg"));
+  EXPECT_TRUE(read(path("out/thin_lens_after.svg")).starts_with("<svg"));
+  EXPECT_NE(read(path("out/thin_lens_before.svg")), read(path("out/thin_lens_after.svg")));
   const std::string svg = read(path("out/thin_lens_side.svg"));
   EXPECT_TRUE(svg.starts_with("<svg"));
   EXPECT_TRUE(svg.ends_with("</svg>\n"));

@@ -66,7 +66,7 @@ TEST_F(TwoProcesses, WithTwoShardsCompleteTheSet) {
   const std::vector<std::string> merge{"merge", path("shards"), "--out", path("shards/psf_set.exr")};
   run_both("psf-set", merge, merge);
   EXPECT_EQ(read(path("shards/psf_set.exr")), read(path("whole/psf_set.exr")));
-  EXPECT_EQ(read(path("shards/psf_set.png")), read(path("whole/psf_set.png")));
+  EXPECT_EQ(read(path("shards/psf_set.svg")), read(path("whole/psf_set.svg")));
 }
 
 TEST_F(TwoProcesses, WithEqualPicturesBothSucceed) {

@@ -119,6 +119,11 @@ PETZVAL_API RgbImage read_pfm(const std::filesystem::path& file);
 /// @throws Error if the file cannot be read or has more than 2^26 pixels
 PETZVAL_API RgbImage read_png(const std::filesystem::path& file);
 
+/// The bytes of an 8-bit sRGB PNG file, to embed it in another file.
+///
+/// @throws Error if the image has no pixels or is inconsistent
+PETZVAL_API std::string to_png(const Rgb8Image& image);
+
 /// Writes an 8-bit sRGB PNG file with write_file().
 ///
 /// @param image  the picture
