@@ -106,6 +106,14 @@ std::vector<PupilGuess> traced_guesses(const Lens& lens, const TwoPlanes& space,
   return result;
 }
 
+/// True for each point with light at a wavelength.
+std::vector<bool> lit_points(const FilmPupils& pupils, FilmPupils::Points points, std::size_t wavelength) {
+  const auto guesses = pupils.guesses(points, wavelength);
+  const auto clearances = pupils.clearances(points, wavelength);
+  if (pupils.of_revolution) return pupil_detail::lit_points(guesses, clearances);
+  return lit_in_plane(guesses, clearances);
+}
+
 PupilChart film_chart(const FilmPupils& pupils, const FilmGrid& grid, PolygonFit fit, std::size_t wavelength) {
   // Polygons of equal area are interpolated between nodes without a check.
   const std::size_t half_steps = fit == PolygonFit::enclosing ? 2 : 1;
@@ -261,7 +269,7 @@ FilmPolygons film_polygons(const FilmPupils& pupils, double film_radius, Polygon
       for (const FilmPoint& point : points) {
         film.push_back({point, last > 0 ? static_cast<double>(i % pupils.layers) / static_cast<double>(last) : 0.5});
       }
-      const auto own = pupil_detail::lit_points(pupils.guesses(film, w), pupils.clearances(film, w));
+      const std::vector<bool> own = lit_points(pupils, film, w);
       std::transform(own.begin(), own.end(), result.begin(), result.begin(), std::logical_or<>());
     }
     return result;

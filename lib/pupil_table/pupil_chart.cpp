@@ -286,9 +286,7 @@ void expand_to_probes(std::span<PupilPolygon> polygons, const PupilChart& chart)
       }
     }
     if (!any) return;
-    for (std::size_t p = 0; p < polygons.size(); ++p) {
-      for (std::size_t k = 0; k < polygon_corners; ++k) polygons[p].corners[k] *= larger[p][k];
-    }
+    for (std::size_t p = 0; p < polygons.size(); ++p) polygons[p].stretch(larger[p]);
   }
 }
 
@@ -352,6 +350,13 @@ double PolygonBetween::relative_radius(const Vec2<double>& position) const noexc
   const Sector<double> facing = sector(k);
   const double relative = facing.relative_radius(q);
   return facing.obscures(relative * relative) ? -1 : relative;
+}
+
+std::vector<bool> lit_in_plane(std::span<const PupilGuess> guesses, const PositionClearances& clearances) {
+  constexpr std::size_t directions = 32;
+  std::vector<bool> lit;
+  for (const PupilRegion& pupil : PupilFinder(guesses, 1, directions, clearances)()) lit.push_back(!pupil.empty());
+  return lit;
 }
 
 std::vector<PupilPolygon> node_polygons(const PupilChart& chart, PolygonFit fit) {

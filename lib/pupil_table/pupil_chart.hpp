@@ -59,6 +59,11 @@ struct PolygonBetween {
   double relative_radius(const Vec2<double>& position) const noexcept;
 };
 
+/// True for each point from which rays pass. Unlike pupil_detail::lit_points(), looks beside the line of a guess, where
+/// the pupils of the corners of a film lie behind cylinders.
+std::vector<bool> lit_in_plane(std::span<const pupil_detail::PupilGuess> guesses,
+                               const pupil_detail::PositionClearances& clearances);
+
 /// The polygons at the nodes; without obscurations if the chart is a quadrant. A node without a pupil takes the
 /// largest pupil of the adjacent cells; with PolygonFit::equal_area this polygon has no area. With
 /// PolygonFit::enclosing interpolated polygons contain the pupils between nodes.

@@ -216,6 +216,12 @@ void PupilPolygon::widen(double by) noexcept {
   }
 }
 
+void PupilPolygon::stretch(const std::array<double, polygon_corners>& scale) noexcept {
+  Expansion expansion(1, *this);
+  expansion.scale = scale;
+  expansion.apply(*this);
+}
+
 PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
   PupilPolygon polygon;
   polygon.middle = region.middle;

@@ -33,6 +33,8 @@ struct PupilPolygon {
 
   /// Scales the corners outwards, and divides the outer radii of obscurations by the same factor.
   void widen(double by) noexcept;
+  /// Scales each corner outwards by at least 1, and keeps the obscurations in place.
+  void stretch(const std::array<double, polygon_corners>& scale) noexcept;
 };
 
 enum class PolygonFit {
