@@ -23,7 +23,7 @@ struct Heights {
 };
 
 /// A meridian; heights are along y, or along x.
-struct Section {
+struct PlaneOfRays {
   bool along_x = false;
 
   template <class V>
@@ -46,7 +46,7 @@ struct Section {
 /// Film and pupil height of the exact ray that leaves the centre of the stop towards the film with a slope (a sine).
 class FromStop {
  public:
-  FromStop(const LensFacts& facts, const TwoPlanes& space, std::size_t wavelength, Section section)
+  FromStop(const LensFacts& facts, const TwoPlanes& space, std::size_t wavelength, PlaneOfRays section)
       : lens_(facts.lens()),
         space_(space),
         wavelength_(wavelength),
@@ -71,17 +71,17 @@ class FromStop {
   const Lens& lens_;
   TwoPlanes space_;
   std::size_t wavelength_;
-  Section section_;
+  PlaneOfRays section_;
   std::size_t stop_;
 };
 
-std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, std::size_t wavelength, Section section,
-                                    const Heights& h) noexcept {
+std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, std::size_t wavelength,
+                                    PlaneOfRays section, const Heights& h) noexcept {
   const auto end = unclipped(lens, space, wavelength, section.line(h));
   return end.transmitted() ? std::optional(end.ray) : std::nullopt;
 }
 
-std::optional<Ray<double>> to_scene(const RayModel& model, std::size_t wavelength, Section section,
+std::optional<Ray<double>> to_scene(const RayModel& model, std::size_t wavelength, PlaneOfRays section,
                                     const Heights& h) noexcept {
   Ray<double> ray;
   const RayFate fate = model.to_scene(section.line(h), wavelength, ray);
@@ -103,7 +103,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const RayModel& model, doub
   const TwoPlanes space = model.pupils().space();
   const bool traced = !model.kind().is_first_order();
   // Adds a chief ray; false if the ray does not reach the scene.
-  const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
+  const auto add = [&](Meridian& nodes, PlaneOfRays section, const Heights& h, double ratio) {
     const auto ray = traced ? to_scene(lens, space, wavelength, section, h) : to_scene(model, wavelength, section, h);
     if (!ray) return false;
     nodes.push_back(
@@ -111,7 +111,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const RayModel& model, doub
     return true;
   };
   if (!traced) {
-    const auto fill = [&](Meridian& nodes, Section section) {
+    const auto fill = [&](Meridian& nodes, PlaneOfRays section) {
       for (int i = 0; i <= steps; ++i) {
         const double film = film_radius * table_radius_ratio * i / steps,
                      near = std::clamp(film, 1e-3 * film_radius, film_radius);
@@ -126,7 +126,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const RayModel& model, doub
     return;
   }
 
-  const auto fill = [&](Meridian& nodes, Section section) {
+  const auto fill = [&](Meridian& nodes, PlaneOfRays section) {
     const FromStop from_stop(facts, space, wavelength, section);
     constexpr double first_stop_radius = 1e-5;
     const auto first = from_stop(first_stop_radius);
