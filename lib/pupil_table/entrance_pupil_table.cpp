@@ -138,7 +138,7 @@ struct EntrancePupilTable::Data {
   }
   /// Calls body(grid).
   template <class Body>
-  auto with_grid(const Body& body) const noexcept {
+  auto with_grid(const Body& body) const {
     return cylinders ? body(grid<2>()) : body(grid<1>());
   }
   /// Calls body(grid, cell) with the cell of a point. Returns false if the grid has no polygon for the point.
