@@ -206,8 +206,8 @@ TEST(RayTiltFit, ThreeTargetsGetTheirBlurs) {
   targets[0].blur_mm = 0.3, targets[1].blur_mm = -0.2, targets[2].blur_mm = 0.4;
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   ASSERT_EQ(fit.status, Status::solved);
-  // The tolerance covers aberrations, which differ between a tilted and an upright film.
-  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.target_mm, 2e-5);
+  // The tolerance covers aberrations of the sampled rays, which differ between a tilted and an upright film.
+  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.target_mm, 1e-4);
 }
 
 TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
