@@ -124,7 +124,8 @@ TEST(FocusEditor, ExactRaysAreSharpestOnTheFilmOfARealLens) {
     EXPECT_LT(radius(0), radius(0.02)) << name;
     EXPECT_LT(radius(0), radius(-0.02)) << name;
     EXPECT_NEAR(state.targets[0].blur_px.value(), 0, 3) << name;
-    EXPECT_NEAR(state.focus_mm, -editor.to_lens({0, 0, -3000}).z, 3) << name;
+    // The best film is found with samples of rays: 6 mm at the subject are less than 2 um at the film of 52 mm.
+    EXPECT_NEAR(state.focus_mm, -editor.to_lens({0, 0, -3000}).z, 6) << name;
   }
 }
 
