@@ -303,6 +303,10 @@ Lens with_groups_at(const Lens& lens, double inverse_distance) {
   return Lens::Data::lens(std::move(data));
 }
 
+bool has_obscurations(const Lens& lens) noexcept {
+  return std::ranges::any_of(lens.surfaces(), [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
+}
+
 Lens without_obscurations(const Lens& lens) {
   auto data = std::make_shared<Lens::Data>(lens.data());
   for (LensSurface& s : data->surfaces) s.obscuration_semi_diameter = 0;

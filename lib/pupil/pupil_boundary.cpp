@@ -372,8 +372,7 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
     throw Error(lens.name() + ": pupil boundary: directions = " + std::to_string(directions) + "; must be 3 to " +
                 std::to_string(max_directions) + ", or 1 on the axis of a lens of revolution");
   }
-  const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
-  if (std::none_of(lens.surfaces().begin(), lens.surfaces().end(), obscures)) {
+  if (!has_obscurations(lens)) {
     return open_boundary(lens, plane, wavelength, directions, coordinates);
   }
   const Lens open = without_obscurations(lens);

@@ -76,9 +76,7 @@ std::vector<PupilGuess> traced_guesses(const Lens& lens, const TwoPlanes& space,
                       : 0;
   const bool somewhere = radius > 0;
   if (!somewhere) radius = std::abs(seen(0, box.half, last_z)) / 8;
-  const auto surfaces = lens.surfaces();
-  const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
-                                [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
+  const bool ring = has_obscurations(lens);
   std::vector<PupilGuess> result;
   for (const auto& [p, layer] : points) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -285,11 +283,8 @@ FilmPolygons film_polygons(const FilmPupils& pupils, double film_radius, Polygon
 
 FilmPolygons traced_polygons(const Lens& lens, const TwoPlanes& space, double film_radius, PolygonFit fit,
                              int threads) {
-  const auto surfaces = lens.surfaces();
   const bool of_revolution = lens.rotationally_symmetric();
-  const bool obscured = of_revolution && std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) {
-                          return s.obscuration_semi_diameter > 0;
-                        });
+  const bool obscured = of_revolution && has_obscurations(lens);
   const Lens open = obscured ? without_obscurations(lens) : lens;
   FilmPupils pupils{.of_revolution = of_revolution, .wavelengths = lens.wavelengths_nm().size()};
   pupils.guesses = [&](FilmPupils::Points points, std::size_t w) { return traced_guesses(open, space, points, w); };
