@@ -32,11 +32,20 @@ inline double power(double base, double exponent) noexcept {
   return __builtin_bit_cast(double, __builtin_bit_cast(std::int64_t, result) + steps);
 }
 
-/// ratio^exponent for ratios in [0, 1].
-inline double falling(const FallingPower& by, double ratio) noexcept {
-  if (by.wholes < 0) return power(ratio, by.exponent);
-  double result = by.half ? std::sqrt(ratio) : ratio;
-  for (int k = by.half ? 0 : 1; k < by.wholes; ++k) result *= ratio;
+/// ratio^exponent for ratios in [0, 1]: a double, or lanes of double.
+template <class V>
+inline V falling(const FallingPower& by, V ratio) noexcept {
+  using std::sqrt;
+  if (by.wholes < 0) {
+    if constexpr (requires { ratio.v; }) {
+      for (int l = 0; l < V::width; ++l) ratio.v[l] = power(ratio.v[l], by.exponent);
+      return ratio;
+    } else {
+      return power(ratio, by.exponent);
+    }
+  }
+  V result = by.half ? sqrt(ratio) : ratio;
+  for (int k = by.half ? 0 : 1; k < by.wholes; ++k) result = result * ratio;
   return result;
 }
 
