@@ -10,12 +10,12 @@
 
 #include "core/text.hpp"
 #include "declared_beam.hpp"
-#include "io/missing_apertures.hpp"
 #include "paraxial/ray_matrix.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::formats_detail {
@@ -509,7 +509,7 @@ Prescription Completion::run() {
   compare_the_declared();
   in_.count_left_out_warnings();
   validate(lens_, in_.where());
-  return io_detail::with_missing_apertures(std::move(lens_), in_.loaded_glasses());
+  return with_apertures(lens_, {.glasses = in_.loaded_glasses()});
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 #include "complete.hpp"
 #include "io/json.hpp"
-#include "io/missing_apertures.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "readers.hpp"
 #include "text_file.hpp"
 
@@ -72,7 +72,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     return first != std::string::npos && bytes[first] == '{' && bytes.find("\"petzval-lens 1\"") != std::string::npos;
   }();
-  if (own_json) return io_detail::with_missing_apertures(parse_prescription(bytes, where), options.glasses);
+  if (own_json) return with_apertures(parse_prescription(bytes, where), {.glasses = options.glasses});
 
   const std::string text = as_utf8(std::move(bytes), where, rule);
   refuse_other_programs(text, where);

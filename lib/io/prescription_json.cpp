@@ -8,9 +8,9 @@
 #include <system_error>
 
 #include "json.hpp"
-#include "missing_apertures.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {
@@ -317,7 +317,7 @@ Prescription read_prescription(const std::filesystem::path& file) {
     throw Error(file.string() +
                 ": is not JSON; must be a lens file of petzval (read_lens() reads files of other programs)");
   }
-  return io_detail::with_missing_apertures(parse_prescription(text, file.string()));
+  return with_apertures(parse_prescription(text, file.string()));
 }
 
 }  // namespace petzval

@@ -161,6 +161,26 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
   return rims;
 }
 
+/// A configuration at the primary wavelength of the design, or else at the reference wavelength; nullopt if a medium
+/// has no index at either.
+std::optional<Lens> at_one_wavelength(const Prescription& rows, std::size_t configuration, CompileOptions options) {
+  options.configuration = configuration;
+  options.missing_glass = MissingGlass::abbe;
+  options.primary_nm.reset();
+  const DesignData& design = rows.design;
+  std::vector<double> wavelengths{rows.reference_wavelength_nm};
+  if (!design.wavelengths.empty()) {
+    wavelengths.insert(wavelengths.begin(), design.wavelengths[design.primary_wavelength].nm);
+  }
+  for (const double nm : wavelengths) {
+    try {
+      return lens_detail::compile_as_given(rows, std::array{nm}, options);
+    } catch (const Error&) {  // of a valid prescription: an index is missing
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<double> declared_field(const Prescription& rows, const Lens& lens, FieldKind kind, double value) {
@@ -186,12 +206,10 @@ std::optional<double> declared_half_field(const Prescription& rows, const Lens& 
 }
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
-  const Lens given = lens_detail::compile_as_given(prescription, wavelengths_nm, options);
-  // A configuration may add apertures, but does not remove any.
-  if (std::ranges::none_of(prescription.surfaces, lacks_aperture)) return given;
-  const Prescription rows = configured(prescription, options.configuration);
-  if (std::ranges::none_of(rows.surfaces, lacks_aperture)) return given;
-  return lens_detail::with_rims(given, rims_of(given, rows));
+  if (std::ranges::none_of(prescription.surfaces, lacks_aperture)) {
+    return lens_detail::compile_as_given(prescription, wavelengths_nm, options);
+  }
+  return lens_detail::compile_as_given(with_apertures(prescription, options), wavelengths_nm, options);
 }
 
 Lens compile(const Prescription& prescription, const CompileOptions& options) {
@@ -205,21 +223,18 @@ Prescription with_apertures(const Prescription& prescription, const CompileOptio
     row.semi_diameter_computed = false;
   }
   if (std::ranges::none_of(result.surfaces, lacks_aperture)) return result;
+  validate(result, result.name.empty() ? "lens" : result.name);
   const Prescription given = result;
-  const DesignData& design = given.design;
-  const double nm =
-      design.wavelengths.empty() ? given.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
 
   // Beams change slowly from one zoom position to the next, so that 9 positions suffice.
   constexpr std::size_t max_positions = 9;
   const std::size_t count = std::max<std::size_t>(given.configurations.size(), 1),
                     tried = std::min(count, max_positions);
   for (std::size_t k = 0; k < tried; ++k) {
-    CompileOptions own = options;
-    own.primary_nm.reset();
-    own.configuration = tried == 1 ? 0 : k * (count - 1) / (tried - 1);
-    const Lens lens = lens_detail::compile_as_given(given, std::array{nm}, own);
-    const std::vector<double> rims = rims_of(lens, configured(given, own.configuration));
+    const std::size_t configuration = tried == 1 ? 0 : k * (count - 1) / (tried - 1);
+    const std::optional<Lens> lens = at_one_wavelength(given, configuration, options);
+    if (!lens) return given;
+    const std::vector<double> rims = rims_of(*lens, configured(given, configuration));
     for (std::size_t i = 0; i < rims.size(); ++i) {
       SurfaceRow& row = result.surfaces[i];
       if (!lacks_aperture(given.surfaces[i]) || !std::isfinite(rims[i])) continue;

@@ -107,8 +107,9 @@ TEST(Apertures, ZoomPositionsShareTheLargest) {
   ASSERT_GT(p.configurations.size(), 1u);
   const Prescription all = with_apertures(p);
   for (std::size_t i = 0; i < p.configurations.size(); ++i) {
-    const Lens lens = compile(p, {.configuration = i});
+    const Lens lens = compile(p, {.configuration = i}), of_all = compile(all, {.configuration = i});
     for (std::size_t s = 0; s < lens.surface_count(); ++s) {
+      EXPECT_EQ(lens.surfaces()[s].semi_diameter, of_all.surfaces()[s].semi_diameter) << i << ' ' << s;
       if (!p.surfaces[s].semi_diameter && std::isfinite(lens.surfaces()[s].semi_diameter)) {
         EXPECT_GE(*all.surfaces[s].semi_diameter, lens.surfaces()[s].semi_diameter) << i << ' ' << s;
       }

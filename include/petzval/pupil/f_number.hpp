@@ -53,14 +53,14 @@ PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wav
 /// A stop without an aperture gets the one of the f-number or the entrance pupil that the prescription declares, or
 /// else of the axial beam that the other apertures and the edges pass. Dummy surfaces, which change no rays, stay
 /// unlimited. All surfaces stay unlimited if neither the stop nor another surface nor an f-number limits the axial
-/// beam, or if the entrance pupil lies at infinity. compile() computes apertures in the same way, for its configuration
-/// and wavelengths; readers of files call this function.
+/// beam, or if the entrance pupil lies at infinity. compile() and readers of files call this function.
 ///
 /// @param prescription  the prescription
-/// @param options       glasses, and the treatment of missing glasses; the wavelength is the primary one of the design,
-///                      or else the reference wavelength
-/// @return              the prescription; `semi_diameter_computed` is true in rows with a computed aperture
-/// @throws Error        if compile() does
+/// @param options       glasses and the policy of indices; n_d and V_d replace missing glasses. The wavelength is the
+///                      primary one of the design, or else the reference wavelength
+/// @return              the prescription; `semi_diameter_computed` is true in rows with a computed aperture. No aperture
+///                      is computed if a medium has no index at these wavelengths
+/// @throws Error        if the prescription is invalid
 PETZVAL_API Prescription with_apertures(const Prescription& prescription, const CompileOptions& options = {});
 
 /// Angle from the axis under which the entrance pupil sees a field of a design, to first order.
