@@ -53,9 +53,10 @@ endfunction()
 
 petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, cameras"
   REQUIRES glm STATIC_LIBS -ldl)
-petzval_install(analysis DESCRIPTION "Spots, point spread functions, colour, distortion and errors of lenses")
+petzval_install(analysis DESCRIPTION "Spots, point spread functions, colour and errors of lenses")
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures")
 petzval_install(figure DESCRIPTION "SVG figures of lenses")
+petzval_install(exports DESCRIPTION "Lenses and cameras for other programs: calibrations, distortion, ray maps, shaders")
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
 get_target_property(formats_links petzval-formats LINK_LIBRARIES)
 set(formats_yaml "")

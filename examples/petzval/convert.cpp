@@ -16,16 +16,15 @@
 #include <string>
 #include <vector>
 
-#include "petzval/analysis/lens_metadata.hpp"
-#include "petzval/analysis/lint.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/exports/lens_metadata.hpp"
+#include "petzval/exports/osl_camera.hpp"
 #include "petzval/formats/lens_file.hpp"
-#include "petzval/formats/open_track_io.hpp"
-#include "petzval/formats/osl_camera.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "petzval/analysis/calibration.hpp"
-#include "petzval/analysis/ray_map.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/exports/calibration.hpp"
+#include "petzval/exports/ray_map.hpp"
 #include "support/files.hpp"
 
 namespace commands {

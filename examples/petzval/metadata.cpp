@@ -12,12 +12,11 @@
 #include <string>
 #include <utility>
 
-#include "petzval/analysis/distortion.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/formats/open_track_io.hpp"
+#include "petzval/exports/distortion.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/image/exr.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"

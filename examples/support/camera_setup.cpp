@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "cli.hpp"
-#include "petzval/analysis/lint.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/lint.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -10,7 +10,6 @@
 
 #include "bokeh.hpp"
 #include "number_csv.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"

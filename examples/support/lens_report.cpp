@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "petzval/analysis/aberrations.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"

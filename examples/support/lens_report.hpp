@@ -12,10 +12,10 @@
 #include "files.hpp"
 #include "load_lens.hpp"
 #include "petzval/analysis/aberrations.hpp"
-#include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/analysis/wavefront.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace examples {

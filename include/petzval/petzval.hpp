@@ -32,7 +32,8 @@
 /// This header declares petzval::core, and dot, cross, length and normalize for Vec2 and Vec3. petzval::core depends on
 /// GLM only. The other components have separate headers:
 ///
-///     petzval::analysis   petzval/analysis/   spots, PSFs, colour, distortion, errors of ray models, lint
+///     petzval::analysis   petzval/analysis/   spots, PSFs, colour, errors of ray models
+///     petzval::exports    petzval/exports/    cameras for other programs: calibrations, distortion, ray maps, shaders
 ///     petzval::formats    petzval/formats/    lenses and glasses in files of other programs
 ///     petzval::fit        petzval/fit/        tilted films that focus several points
 ///                         petzval/editor/     focus control by events, for interactive programs
@@ -58,6 +59,7 @@
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"

@@ -12,6 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "pupil/pupil_boundary.hpp"
 #include "pupil_nodes.hpp"
 #include "trace/sequential.hpp"
@@ -197,6 +198,16 @@ std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const 
   const auto own = xy(behind), of_light = xy(white);
   return LensColour{behind[1] / white[1], own, of_light, correlated_colour_temperature(own, table),
                     correlated_colour_temperature(of_light, table)};
+}
+
+ApertureState aperture_state(const Lens& lens) {
+  ApertureState state{.f_number = real_f_number(lens)};
+  state.area_f_number = std::max(state.f_number, area_f_number(lens));
+  if (states_coatings(lens)) {
+    const auto light = transmittance(lens, FieldPoint{.z = -std::numeric_limits<double>::infinity()});
+    if (light) state.t_number = state.area_f_number / std::sqrt(*light);
+  }
+  return state;
 }
 
 }  // namespace petzval

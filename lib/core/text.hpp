@@ -22,4 +22,7 @@ PETZVAL_API std::size_t utf8_length(std::string_view text, std::size_t at) noexc
 /// The longest beginning of a UTF-8 text with at most `most` bytes that does not split a character.
 PETZVAL_API std::string_view beginning(std::string_view text, std::size_t most) noexcept;
 
+/// The text on one line: control characters, including line breaks, become blanks.
+PETZVAL_API std::string one_line(std::string text);
+
 }  // namespace petzval

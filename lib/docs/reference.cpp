@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "petzval/analysis/choose_model.hpp"
-#include "petzval/analysis/distortion.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/analysis/psf_set.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/blur/gather.hpp"
+#include "petzval/exports/distortion.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/figure/lens_figures.hpp"
 #include "petzval/formats/lens_file.hpp"

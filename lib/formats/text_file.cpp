@@ -206,17 +206,6 @@ void append(std::string& texts, std::string_view separator, std::string_view tex
   texts += text;
 }
 
-std::string one_line(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte < 0x20 || byte == 0x7F) text[i] = ' ';
-    // U+0080 to U+009F in UTF-8.
-    const bool high = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
-    if (high) text.replace(i, 2, " ");
-  }
-  return text;
-}
-
 std::string one_word(std::string_view text) {
   std::string result = one_line(std::string(text));
   for (char& c : result) {

@@ -59,9 +59,6 @@ inline bool is_one_of(std::string_view word, std::string_view list) noexcept { r
 /// Appends a text, after a separator unless it is the first.
 void append(std::string& texts, std::string_view separator, std::string_view text);
 
-/// The text on one line: control characters, including line breaks, become blanks.
-std::string one_line(std::string text);
-
 /// The text as one word: blanks, quotes and control characters, which some formats forbid in names, become underscores.
 std::string one_word(std::string_view text);
 

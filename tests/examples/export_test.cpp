@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "../data_lenses.hpp"
-#include "petzval/analysis/ray_map.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/exports/ray_map.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
 #include "program.hpp"

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "petzval/analysis/aberrations.hpp"
-#include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"

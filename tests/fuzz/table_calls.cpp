@@ -8,9 +8,9 @@
 
 #include "fixed_lenses.hpp"
 #include "laws.hpp"
-#include "petzval/analysis/distortion.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
+#include "petzval/exports/distortion.hpp"
 #include "petzval/focus/focus.hpp"
 #include "polynomial/ray_polynomial.hpp"
 #include "pupil_table/film_pupil_table.hpp"

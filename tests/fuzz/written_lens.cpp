@@ -3,10 +3,10 @@
 #include <string>
 
 #include "laws.hpp"
-#include "petzval/analysis/lint.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/io/lint.hpp"
 #include "wild_lens.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "../analysis/distorting_lenses.hpp"
 #include "../data_lenses.hpp"
+#include "distorting_lenses.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

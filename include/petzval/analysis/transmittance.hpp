@@ -93,4 +93,19 @@ struct LensColour {
 PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
                                                   const ColourMatching& table);
 
+/// The f-numbers and the T-stop of a lens, for reports and file formats.
+struct ApertureState {
+  double f_number = 0;       ///< real_f_number(), the argument of with_f_number() if the lens is stopped down
+  double area_f_number = 0;  ///< area_f_number(), at least f_number: with blades and obscurations, without losses
+  /// T-stop: area_f_number divided by the root of the transmittance() of the axis at infinity, at the primary
+  /// wavelength; nullopt unless a coating is stated (states_coatings()): the losses are unknown.
+  std::optional<double> t_number{};
+};
+
+/// The aperture state of a lens at its primary wavelength.
+///
+/// @throws Error under the conditions of real_f_number() and area_f_number(), and of transmittance() if a coating is
+///               stated
+PETZVAL_API ApertureState aperture_state(const Lens& lens);
+
 }  // namespace petzval

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "petzval/analysis/distortion.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/analysis/psf_set.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/fragment_lists.hpp"
+#include "petzval/exports/distortion.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/image/image.hpp"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/formats/open_track_io.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "petzval/analysis/distortion.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/exports/distortion.hpp"
 
 namespace petzval {
 namespace {

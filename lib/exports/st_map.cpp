@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "analysis/undistorted_box.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "undistorted_box.hpp"
 
 namespace petzval {
 namespace {

@@ -9,9 +9,9 @@
 #include "lens/data.hpp"
 #include "lens/edges.hpp"
 #include "lens/equator.hpp"
-#include "petzval/analysis/lint.hpp"
+#include "petzval/io/lint.hpp"
 
-namespace petzval::analysis_detail {
+namespace petzval::io_detail {
 
 namespace {
 
@@ -69,7 +69,7 @@ std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
   return least;
 }
 
-}  // namespace petzval::analysis_detail
+}  // namespace petzval::io_detail
 
 namespace petzval {
 

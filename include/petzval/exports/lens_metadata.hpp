@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/exports/distortion.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 
@@ -29,21 +31,6 @@ PETZVAL_API LensIdentity identity_of(const Prescription& prescription);
 ///
 /// @throws Error unless the diagonal is positive and finite; an image circle above 1000 focal lengths is infinite
 PETZVAL_API Film film_of(const Prescription& prescription, const Lens& lens);
-
-/// The f-numbers and the T-stop of a lens, for reports and file formats.
-struct ApertureState {
-  double f_number = 0;       ///< real_f_number(), the argument of with_f_number() if the lens is stopped down
-  double area_f_number = 0;  ///< area_f_number(), at least f_number: with blades and obscurations, without losses
-  /// T-stop: area_f_number divided by the root of the transmittance() of the axis at infinity, at the primary
-  /// wavelength; nullopt unless a coating is stated (states_coatings()): the losses are unknown.
-  std::optional<double> t_number{};
-};
-
-/// The aperture state of a lens at its primary wavelength.
-///
-/// @throws Error under the conditions of real_f_number() and area_f_number(), and of transmittance() if a coating is
-///               stated
-PETZVAL_API ApertureState aperture_state(const Lens& lens);
 
 /// Lens settings, with the terms of OpenEXR and OpenTrackIO.
 struct LensState : ApertureState {
@@ -76,5 +63,31 @@ struct PETZVAL_API ExposureFalloff {
 ///
 /// @throws Error if the axis is dark; also under the conditions of film_irradiance()
 PETZVAL_API ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film);
+
+/// Formats a lens as one sample of OpenTrackIO 1.0.1 (SMPTE RIS), for Unreal Engine and other programs.
+///
+/// The JSON contains these keys; keys with unknown values are omitted:
+/// - static.camera: activeSensorPhysicalDimensions (mm) and activeSensorResolution of the film;
+/// - static.lens: make, model, serialNumber, nominalFocalLength (mm), distortionOverscanMax, and calibrationHistory, a
+///   text with the errors of distortion and falloff, the field up to which they hold, and the field from which on the
+///   coefficients fold the picture;
+/// - lens.distortion: "Brown-Conrady D-U" and "Brown-Conrady U-D", with overscan and the radial coefficients of
+///   OpenLensIO 1.0 for radii in mm on the film: k1, k3, k5 in the numerator and k2, k4, k6 in the denominator;
+/// - lens: pinholeFocalLength (mm), projectionOffset (mm, to the right and down), entrancePupilOffset and focusDistance
+///   from the film (m; focusDistance is omitted at infinity), fStop, tStop (only if the lens states a coating,
+///   LensState::t_number), and exposureFalloff (1/mm^2, 1/mm^4, 1/mm^6).
+///
+/// @param lens      the lens, with its film at the focus
+/// @param film      size, resolution and shift of the sensor
+/// @param identity  make, model, serial number and nominal focal length
+/// @throws Error    if LensDistortion, fit_brown_conrady(), overscan() or fit_exposure_falloff() throws: for fisheyes,
+///                  lenses with cylinders, tilted films and others; if a text is not UTF-8 or exceeds 1023 bytes
+PETZVAL_API std::string format_open_track_io(const Lens& lens, const Film& film, const LensIdentity& identity = {});
+
+/// Writes the result of format_open_track_io() to a file.
+///
+/// @throws Error if format_open_track_io() or write_file() throws
+PETZVAL_API void write_open_track_io(const Lens& lens, const Film& film, const LensIdentity& identity,
+                                     const std::filesystem::path& file);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 

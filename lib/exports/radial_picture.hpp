@@ -5,7 +5,7 @@
 
 #include "petzval/camera/camera.hpp"
 
-namespace petzval::analysis_detail {
+namespace petzval::exports_detail {
 
 /// Distance in the picture of each field angle, from chief rays towards the upper right corner of the picture.
 class ChiefProfile {
@@ -42,4 +42,4 @@ struct RadialPicture {
   double widest = 0;  ///< the first multiple of 0.5 degrees beyond the corner, or the last with a chief ray
 };
 
-}  // namespace petzval::analysis_detail
+}  // namespace petzval::exports_detail

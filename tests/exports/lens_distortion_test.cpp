@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 #include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"

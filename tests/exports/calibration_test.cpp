@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/calibration.hpp"
+#include "petzval/exports/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 
 #include "../data_lenses.hpp"
-#include "petzval/analysis/distortion.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/exports/distortion.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "analysis/undistorted_box.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "undistorted_box.hpp"
 
 namespace petzval {
 namespace {

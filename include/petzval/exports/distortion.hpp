@@ -183,7 +183,7 @@ struct StMaps {
 ///
 /// Accuracy: within 0.001 pixels of LensDistortion, 0.02 near the edge of the lit region and 0.1 at fields beyond 70
 /// degrees. With linear interpolation of the maps and exact or first-order models, one map after the other returns to
-/// the start within 0.005 pixels (tests/analysis/st_map_test.cpp).
+/// the start within 0.005 pixels (tests/exports/st_map_test.cpp).
 PETZVAL_API StMaps st_maps(const LensDistortion& distortion, std::optional<double> overscan = {}, int threads = 1);
 
 }  // namespace petzval

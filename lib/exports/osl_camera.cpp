@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/formats/osl_camera.hpp"
+#include "petzval/exports/osl_camera.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,6 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "pupil/pupil_boundary.hpp"
-#include "text_file.hpp"
 
 namespace petzval {
 namespace {
@@ -180,7 +179,7 @@ void OslCamera::set_parameters() {
   const std::string spectrum = nm.size() == 1 ? to_text(nm[0], 7) + " nm"
                                               : std::to_string(nm.size()) + " wavelengths from " + to_text(first, 7) +
                                                     " to " + to_text(last, 7) + " nm";
-  set("title", formats_detail::one_line(lens_.name()));
+  set("title", one_line(lens_.name()));
   set("data", "focal length " + to_text(focal_length, 5) + " mm, f/" + to_text(f_number_, 3) + ", " +
                   std::to_string(lens_.surface_count()) + " surfaces, at " + spectrum);
   set("sensor_width", film_.width_mm);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/lint.hpp"
+#include "petzval/io/lint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +93,7 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
                     findings.at(i) + "semi_diameter = 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
-    const auto spacing = analysis_detail::least_spacing(lens, position);
+    const auto spacing = io_detail::least_spacing(lens, position);
     if (spacing && spacing->width < -1e-9 * std::max(spacing->height, std::abs(surface.thickness))) {
       findings.add({Kind::overlap, i, spacing->width, 0,
                     findings.at(i) + "overlaps the next surface by " + mm(-spacing->width) + " at a height of " +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "distorting_lenses.hpp"
-#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 
 namespace petzval {
 namespace st_map_test {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/calibration.hpp"
+#include "petzval/exports/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "analysis/radial_picture.hpp"
 #include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "radial_picture.hpp"
 
 namespace petzval {
 namespace {
@@ -252,18 +252,18 @@ double Calibration::value(std::string_view wanted) const {
 }
 
 std::vector<Calibration> calibrations(const Camera& camera, std::optional<double> subject_z_mm) {
-  const analysis_detail::RadialPicture picture(camera, subject_z_mm);
+  const exports_detail::RadialPicture picture(camera, subject_z_mm);
   const Film& film = camera.film();
   const Lens& lens = camera.lens();
   const double half_width = film.columns / 2.0, half_height = film.rows / 2.0;
-  const double corner = picture.corner, on_axis = analysis_detail::irradiance(camera, 0);
+  const double corner = picture.corner, on_axis = exports_detail::irradiance(camera, 0);
   constexpr int count = 200;
   std::vector<Node> nodes;
   for (int i = 1; i <= count; ++i) {
     Node node{.radius = corner * (i - 0.5) / count};
     const auto field = picture.primary.field(node.radius, picture.widest);
     if (!field) break;
-    node.illumination = analysis_detail::irradiance(camera, node.radius * film.pixel_mm()) / on_axis;
+    node.illumination = exports_detail::irradiance(camera, node.radius * film.pixel_mm()) / on_axis;
     if (!(node.illumination > 0)) break;
     node.field = *field;
     node.weight = node.radius * fraction_inside(node.radius, half_width, half_height);
@@ -284,7 +284,7 @@ std::vector<Calibration> calibrations(const Camera& camera, std::optional<double
   const double half = std::min(half_width, half_height);
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     if (w == lens.primary_wavelength()) continue;
-    const analysis_detail::ChiefProfile own = picture.at(w);
+    const exports_detail::ChiefProfile own = picture.at(w);
     const auto ratio = [&](const Node& node) { return own.radius(node.field).value_or(node.radius); };
     const VectorXd c = fits.radial([=](const Node& node) { return node.radius / half; }, {1, 2, 3},
                                    [&](const Node& node) { return ratio(node) / half; });

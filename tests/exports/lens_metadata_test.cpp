@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
-#include "../analysis/distorting_lenses.hpp"
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "distorting_lenses.hpp"
 #include "petzval/analysis/transmittance.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/iris/iris.hpp"

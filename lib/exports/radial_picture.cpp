@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/radial_picture.hpp"
+#include "radial_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "camera/lens_facts.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/analysis/distortion.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/exports/distortion.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::analysis_detail {
+namespace petzval::exports_detail {
 namespace {
 
 /// Direction from the centre of the picture to its upper right corner: to the right and up.
@@ -77,4 +77,4 @@ RadialPicture::RadialPicture(const Camera& of, std::optional<double> subject_z_m
   }
 }
 
-}  // namespace petzval::analysis_detail
+}  // namespace petzval::exports_detail

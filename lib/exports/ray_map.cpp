@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/ray_map.hpp"
+#include "petzval/exports/ray_map.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 #include <algorithm>
 #include <cmath>

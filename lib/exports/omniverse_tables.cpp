@@ -5,13 +5,13 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "analysis/radial_picture.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/text.hpp"
-#include "petzval/analysis/calibration.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/exports/calibration.hpp"
 #include "petzval/lens/lens.hpp"
+#include "radial_picture.hpp"
 
 namespace petzval {
 namespace {
@@ -76,13 +76,13 @@ OmniverseTables omniverse_tables(const Camera& camera, std::optional<double> sub
   if (exit_size < 3) {
     throw Error("omniverse_tables: exit_size = " + std::to_string(exit_size) + "; must be 3 or more");
   }
-  const analysis_detail::RadialPicture picture(camera, subject_z_mm);
+  const exports_detail::RadialPicture picture(camera, subject_z_mm);
   const Film& film = camera.film();
 
   // The farthest lit point towards the corner.
   double lit = picture.corner;
   for (double dark = lit, inside = 0; dark - inside > 1e-3;) {
-    (analysis_detail::irradiance(camera, lit * film.pixel_mm()) > 0 ? inside : dark) = lit;
+    (exports_detail::irradiance(camera, lit * film.pixel_mm()) > 0 ? inside : dark) = lit;
     if (inside == picture.corner) break;
     lit = (inside + dark) / 2;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/formats/open_track_io.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <set>
 #include <string>
 
-#include "../analysis/distorting_lenses.hpp"
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "distorting_lenses.hpp"
 #include "petzval/analysis/transmittance.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/exports/lens_metadata.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "core/least_squares.hpp"
 #include "core/text.hpp"
-#include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
@@ -33,16 +30,6 @@ Film film_of(const Prescription& prescription, const Lens& lens) {
   }
   const double unit = diagonal / std::hypot(3.0, 2.0);
   return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
-}
-
-ApertureState aperture_state(const Lens& lens) {
-  ApertureState state{.f_number = real_f_number(lens)};
-  state.area_f_number = std::max(state.f_number, area_f_number(lens));
-  if (states_coatings(lens)) {
-    const auto light = transmittance(lens, FieldPoint{.z = -std::numeric_limits<double>::infinity()});
-    if (light) state.t_number = state.area_f_number / std::sqrt(*light);
-  }
-  return state;
 }
 
 LensState lens_state(const LensDistortion& distortion) {

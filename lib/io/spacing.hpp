@@ -6,7 +6,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::analysis_detail {
+namespace petzval::io_detail {
 
 /// The smallest distance between two adjacent surfaces.
 struct Spacing {
@@ -19,4 +19,4 @@ struct Spacing {
 /// only a vertex on the wrong side of a mirror is detected.
 std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface);
 
-}  // namespace petzval::analysis_detail
+}  // namespace petzval::io_detail

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "petzval/analysis/distortion.hpp"
+#include "petzval/exports/distortion.hpp"
 
 namespace petzval {
 
