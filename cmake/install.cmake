@@ -13,7 +13,7 @@ file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_
 # petzval_install(image DESCRIPTION "..." STATIC_REQUIRES OpenEXR): installs one component if it was built.
 # Each component has its own export set, so that a program that uses core does not need the libraries of other components.
 # REQUIRES, STATIC_REQUIRES, STATIC_LIBS: other libraries that users link, named as in pkg-config. In the .pc file and in
-# petzvalConfig.cmake, publicly linked components precede these. NEEDS: components that are linked privately.
+# petzvalConfig.cmake, publicly linked components precede these. NEEDS: components that a static library links privately.
 function(petzval_install component)
   cmake_parse_arguments(PARSE_ARGV 1 pc "" "DESCRIPTION;REQUIRES;STATIC_REQUIRES;STATIC_LIBS" "NEEDS")
   set(name petzval-${component})
@@ -24,6 +24,12 @@ function(petzval_install component)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT ${name} NAMESPACE petzval:: FILE ${name}-targets.cmake DESTINATION ${package_dir})
 
+  get_target_property(type ${name} TYPE)
+  if(type STREQUAL SHARED_LIBRARY)  # a shared library has already linked these
+    set(pc_STATIC_REQUIRES "")
+    set(pc_STATIC_LIBS "")
+    set(pc_NEEDS "")
+  endif()
   get_target_property(needs ${name} INTERFACE_LINK_LIBRARIES)
   list(FILTER needs INCLUDE REGEX "^petzval::")
   list(TRANSFORM needs REPLACE "^petzval::" "")
@@ -38,11 +44,6 @@ function(petzval_install component)
   list(JOIN needs ", " pc_needs)
   string(JOIN ", " pc_REQUIRES ${pc_needs} ${pc_REQUIRES})
 
-  get_target_property(type ${name} TYPE)
-  if(type STREQUAL SHARED_LIBRARY)  # a shared library has already linked these
-    set(pc_STATIC_REQUIRES "")
-    set(pc_STATIC_LIBS "")
-  endif()
   set(built_components ${built_components} ${component} PARENT_SCOPE)
   if(type STREQUAL STATIC_LIBRARY AND component STREQUAL "fit")  # Ceres has no .pc file to require
     return()
@@ -55,8 +56,8 @@ petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray 
   REQUIRES glm STATIC_LIBS -ldl)
 petzval_install(analysis DESCRIPTION "Spots, point spread functions, colour and errors of lenses")
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures")
-petzval_install(figure DESCRIPTION "SVG figures of lenses")
 petzval_install(exports DESCRIPTION "Lenses and cameras for other programs: calibrations, distortion, ray maps, shaders")
+petzval_install(figure DESCRIPTION "SVG figures of lenses")
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
 get_target_property(formats_links petzval-formats LINK_LIBRARIES)
 set(formats_yaml "")
@@ -65,7 +66,7 @@ if("yaml-cpp" IN_LIST formats_links)
 endif()
 petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES "${formats_yaml}")
 petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
-petzval_install(c DESCRIPTION "Lenses and cameras for renderers, in C and any C++" NEEDS core analysis fit formats)
+petzval_install(c DESCRIPTION "Lenses and cameras for renderers, in C and any C++" NEEDS core analysis formats)
 
 get_target_property(core_type petzval-core TYPE)
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}

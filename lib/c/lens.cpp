@@ -4,6 +4,7 @@
 #include <span>
 
 #include "camera/lens_facts.hpp"
+#include "fit/film_fit.hpp"
 #include "handles.hpp"
 #include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/geometry.hpp"
@@ -12,9 +13,6 @@
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
-#ifdef PETZVAL_C_FITS
-#include "petzval/fit/tilt_fit.hpp"
-#endif
 
 namespace petzval::c_detail {
 namespace {
@@ -342,15 +340,13 @@ petzval_status petzval_lens_fit_film(const petzval_lens* handle, const petzval_f
       if (!solution) status = name(solution.status);
       fitted = solution.film, found.rms_mm = solution.rms_mm, found.upright = 1;
     } else {
-#ifdef PETZVAL_C_FITS
-      const TiltFit solution = fit_tilt(lens, targets, {.max_tilt_rad = max_tilt_rad, .film = start});
-      if (!solution) status = name(solution.status);
+      const TiltOptions options{.max_tilt_rad = max_tilt_rad, .film = start};
+      const TiltFit solution =
+          fit_detail::fit_film(image_rays(lens, start, targets, options.rays), targets, options, {});
+      if (!solution) status = fit_detail::status_name(solution.status);
       fitted = solution.film, found.rms_mm = solution.rms_mm;
       found.limited = solution.status == TiltFitStatus::limited;
       found.upright = solution.status == TiltFitStatus::least_tilt;
-#else
-      throw Failure{PETZVAL_NOT_BUILT, "tilted films need the component fit, which was not built"};
-#endif
     }
     if (!status.empty()) throw Error(lens.name() + ": film for focus points: " + std::string(status));
     petzval_film result = received(film, "petzval_film");

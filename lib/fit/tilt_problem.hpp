@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -40,6 +41,19 @@ struct TiltSpace {
 
   FilmSlopes film(double z, double along, double across) const noexcept {
     return {z, along * along_x - across * along_y, along * along_y + across * along_x};
+  }
+  /// A film by parameters of similar magnitude: z, and the slopes times the spreads.
+  FilmSlopes film(const Eigen::Vector3d& at) const noexcept {
+    return film(at[0], at[1] / spread_along, at[2] / spread_across);
+  }
+  Eigen::Vector3d parameters_of(const FilmSlopes& film) const noexcept {
+    return {film.z, spread_along * along(film), spread_across * across(film)};
+  }
+  /// Derivatives of z, p and q with respect to these parameters.
+  Eigen::Matrix3d by_parameters() const noexcept {
+    return Eigen::Matrix3d{{1, 0, 0},
+                           {0, along_x / spread_along, -along_y / spread_across},
+                           {0, along_y / spread_along, along_x / spread_across}};
   }
   double along(const FilmSlopes& film) const noexcept { return film.p * along_x + film.q * along_y; }
   double across(const FilmSlopes& film) const noexcept { return film.q * along_x - film.p * along_y; }
@@ -93,17 +107,8 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> ta
 struct TiltSolution {
   bool converged = false, limited = false;
   FilmSlopes film;
-  double restraint = 0;  ///< Lagrange multiplier of the slope limit
 };
-/// The film with the least sum of squared errors within the slope limit. It takes few steps if `start` is the solution
-/// for nearly the same errors.
-TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const TiltSolution& start);
-/// The film with the least Tukey loss (biweight; errors above `reach` have no weight), without a slope limit. nullopt
-/// if the search does not converge.
-std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> errors, std::span<const double> weights,
-                                           const TiltSpace& space, const FilmSlopes& start, double reach);
-
-/// The fraction of its weight, 0 to 1, that each target of problem.used keeps.
-std::vector<double> robust_weights(const TiltProblem& problem, std::span<const ImagedTarget> targets);
+/// The film with the least sum of squared errors within the slope limit.
+TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const FilmSlopes& start);
 
 }  // namespace petzval::fit_detail

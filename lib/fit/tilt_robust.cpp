@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Least median of squares (Rousseeuw 1984) over films through as many targets as a film has parameters, followed by the
 // nearest minimum of Tukey's loss. Blurs are not weighted here: a target is an outlier independently of its weight.
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,7 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "tilt_problem.hpp"
+#include "film_fit.hpp"
+#include "fit_to_rays.hpp"
 
 namespace petzval::fit_detail {
 namespace {
@@ -89,8 +95,65 @@ LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& spac
   return best;
 }
 
-}  // namespace
+/// The blur of a target as a function of the first parameters of a film.
+class ParameterBlur final : public ceres::CostFunction {
+ public:
+  ParameterBlur(const IdealBlur& blur, const TiltSpace& space) : blur_(blur), space_(space) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(space.parameters);
+  }
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    std::copy_n(parameters[0], space_.parameters, at.data());
+    Eigen::RowVector3d by_film;
+    // Ceres prints a message if an evaluation fails or a number is not finite.
+    if (!blur_(space_.film(at), residuals, by_film.data()) || !std::isfinite(*residuals)) {
+      *residuals = unreachable, by_film.setZero();
+    }
+    const Eigen::RowVector3d by = by_film * space_.by_parameters();
+    if (jacobians && jacobians[0]) std::copy_n(by.data(), space_.parameters, jacobians[0]);
+    return true;
+  }
+  /// Error of a film whose front the rays do not reach: so large that the solver rejects the step.
+  static constexpr double unreachable = 1e100;
 
+ private:
+  const IdealBlur& blur_;
+  const TiltSpace& space_;
+};
+
+/// The film with the least Tukey loss (biweight; errors above `reach` have no weight), without a slope limit; `start`
+/// if the search does not converge.
+FilmSlopes least_tukey_loss(std::span<const IdealBlur> blurs, std::span<const double> weights, const TiltSpace& space,
+                            const FilmSlopes& start, double reach) {
+  ceres::TukeyLoss tukey(reach);
+  Eigen::Vector3d parameters = space.parameters_of(start);
+  ceres::Problem problem;
+  for (std::size_t i = 0; i < blurs.size(); ++i) {
+    problem.AddResidualBlock(new ParameterBlur(blurs[i], space),
+                             new ceres::ScaledLoss(&tukey, weights[i], ceres::DO_NOT_TAKE_OWNERSHIP),
+                             parameters.data());
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  // The parameters are scaled, so the first step is not shortened. The search ends at the rounding error of numbers
+  // near 1 or of the sum of squares.
+  options.initial_trust_region_radius = options.max_trust_region_radius;
+  options.jacobi_scaling = false;
+  options.function_tolerance = 1e-13;
+  options.gradient_tolerance = 1e-15;
+  options.parameter_tolerance = 1e-14;
+  options.max_num_iterations = 200;
+  options.max_num_consecutive_invalid_steps = options.max_num_iterations;  // Ceres prints if it gives up
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  const bool found = summary.termination_type == ceres::CONVERGENCE && summary.final_cost < ParameterBlur::unreachable;
+  return found ? space.film(parameters) : start;
+}
+
+/// The fraction of its weight, 0 to 1, that each target of problem.used keeps.
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const ImagedTarget> targets) {
   // In units of the mean cone, to which the constant `rounding` below is relative.
   std::vector<IdealBlur> blurs = problem.blurs;
@@ -112,9 +175,7 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const I
   const double spare = static_cast<double>(blurs.size()) - problem.space.parameters;
   const double deviation = std::max(1.4826 * (1 + 5 / spare) * std::sqrt(start.square), rounding);
   const double reach = 4.685 * deviation;
-  std::vector<const BlurErrors*> errors;
-  for (const IdealBlur& blur : blurs) errors.push_back(&blur);
-  const FilmSlopes film = least_tukey_loss(errors, weights, problem.space, start.film, reach).value_or(start.film);
+  const FilmSlopes film = least_tukey_loss(blurs, weights, problem.space, start.film, reach);
 
   for (std::size_t i = 0; i < blurs.size(); ++i) {
     double blur = 0;
@@ -124,4 +185,23 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const I
   return weights;
 }
 
+}  // namespace
 }  // namespace petzval::fit_detail
+
+namespace petzval {
+
+std::string_view name(TiltFitStatus status) noexcept { return fit_detail::status_name(status); }
+
+TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  return fit_detail::fit_film(lens, targets, options, fit_detail::robust_weights);
+}
+
+TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  return fit_detail::fit_film(lens, targets, options, fit_detail::robust_weights);
+}
+
+TiltFit fit_tilt(const Lens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  return fit_tilt(image_rays(lens, options.film, targets, options.rays), targets, options);
+}
+
+}  // namespace petzval

@@ -55,7 +55,7 @@ struct TiltFit {
 /// Tilts and moves a film so that each focus target comes as close as possible to its target blur.
 ///
 /// Minimises the weighted squares of the signed blur minus the target blur. Starts from the least-squares plane in
-/// inverse distance, refined by Ceres.
+/// inverse distance, refined by Gauss-Newton steps.
 ///
 ///     const IdealLens lens = thin_lens(50, 2);
 ///     const std::vector<FocusTarget> targets{{.point = {{-300, -200, -1500}}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/fit/tilt_fit.hpp"
+#include "fit/film_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,11 @@
 #include <numbers>
 
 #include "core/text.hpp"
-#include "fit/fit_to_rays.hpp"
 #include "focus/targets.hpp"
 #include "petzval/core/error.hpp"
-#include "tilt_problem.hpp"
 #include "tilt_rays.hpp"
 
-namespace petzval {
+namespace petzval::fit_detail {
 namespace {
 
 /// The options with film.z_mm set. Throws Error if the options are invalid.
@@ -61,8 +59,8 @@ bool clear_of_lens(const IdealLens& lens, const Film& film) {
 /// The result for a solution; the given film if there is no solution.
 /// @param blur_of the blur of a target on a film
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
-                  std::span<const fit_detail::ImagedTarget> seen, const fit_detail::TiltProblem& problem,
-                  const fit_detail::TiltSolution& solution, const auto& blur_of) {
+                  std::span<const ImagedTarget> seen, const TiltProblem& problem, const TiltSolution& solution,
+                  const auto& blur_of) {
   TiltFit fit;
   fit.rank = problem.rank;
   fit.film = options.film;
@@ -92,30 +90,30 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
 }
 
 /// The problem with reduced weights for outliers, or without outliers.
-fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::ImagedTarget> seen,
-                                                 const TiltOptions& options) {
+TiltProblem problem_without_outliers(const IdealLens& lens, std::span<ImagedTarget> seen, const TiltOptions& options,
+                                     const RobustWeights& robust_weights) {
   constexpr std::size_t min_targets = 5;  // targets needed to identify an outlier
-  const fit_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
-  if (!options.robust || problem.used.size() < min_targets) return problem;
+  const TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
+  if (!options.robust || !robust_weights || problem.used.size() < min_targets) return problem;
   const std::vector<double> kept = robust_weights(problem, seen);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    fit_detail::ImagedTarget& target = seen[problem.used[i]];
+    ImagedTarget& target = seen[problem.used[i]];
     target.weight *= kept[i];
     if (!(target.weight > 0)) target.status = TargetStatus::outlier;
   }
   return tilt_problem(lens, seen, options.max_tilt_rad);
 }
 
-fit_detail::TiltSolution solved(const fit_detail::TiltProblem& problem) {
+TiltSolution solved(const TiltProblem& problem) {
   if (problem.rank == PlaneRank::none) return {};
-  std::vector<const fit_detail::BlurErrors*> errors;
+  std::vector<const BlurErrors*> errors;
   for (const auto& blur : problem.blurs) errors.push_back(&blur);
-  return least_blur(errors, problem.space, {.film = problem.start});
+  return least_blur(errors, problem.space, problem.start);
 }
 
 }  // namespace
 
-std::string_view name(TiltFitStatus status) noexcept {
+std::string_view status_name(TiltFitStatus status) noexcept {
   switch (status) {
     case TiltFitStatus::solved: return "solved";
     case TiltFitStatus::least_tilt: return "least_tilt";
@@ -127,23 +125,21 @@ std::string_view name(TiltFitStatus status) noexcept {
   return "unknown";
 }
 
-TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+TiltFit fit_film(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given,
+                 const RobustWeights& robust_weights) {
   const TiltOptions options = checked(given, lens.rear_focal_z);
-  std::vector<fit_detail::ImagedTarget> seen = fit_detail::imaged_targets(lens, targets);
-  const fit_detail::TiltProblem problem = problem_without_outliers(lens, seen, options);
+  std::vector<ImagedTarget> seen = imaged_targets(lens, targets);
+  const TiltProblem problem = problem_without_outliers(lens, seen, options, robust_weights);
   return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const Film& film) {
     return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
   });
 }
 
-TiltFit fit_tilt(const Lens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
-  return fit_tilt(image_rays(lens, options.film, targets, options.rays), targets, options);
-}
-
-TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+TiltFit fit_film(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given,
+                 const RobustWeights& robust_weights) {
   const TiltOptions options = checked(given, lens.lens().film_z());
   const IdealLens& ideal = lens.ideal();
-  std::vector<fit_detail::ImagedTarget> seen = fit_detail::imaged_targets(ideal, targets);
+  std::vector<ImagedTarget> seen = imaged_targets(ideal, targets);
   std::vector<RayBundle> bundles(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!seen[i].image) continue;
@@ -153,12 +149,12 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
       seen[i].weight = 0;
     }
   }
-  const fit_detail::TiltProblem problem = problem_without_outliers(ideal, seen, options);
-  const fit_detail::TiltSolution thick = solved(problem);
-  fit_detail::TiltSolution solution = thick;
+  const TiltProblem problem = problem_without_outliers(ideal, seen, options, robust_weights);
+  const TiltSolution thick = solved(problem);
+  TiltSolution solution = thick;
   if (thick.converged) {
-    std::vector<fit_detail::RayBlur> blurs;
-    std::vector<const fit_detail::BlurErrors*> errors;
+    std::vector<RayBlur> blurs;
+    std::vector<const BlurErrors*> errors;
     blurs.reserve(problem.used.size());
     for (std::size_t k = 0; k < problem.used.size(); ++k) {
       const std::size_t i = problem.used[k];
@@ -166,7 +162,7 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
       blurs.emplace_back(bundles[i], problem.frame, root, targets[i].blur_mm / problem.frame.unit);
       errors.push_back(&blurs.back());
     }
-    solution = least_blur(errors, problem.space, thick);
+    solution = least_blur(errors, problem.space, thick.film);
   }
   TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const Film& film) {
     const std::optional<ExactBlur> blur = blur_on(bundles[i], film);
@@ -178,4 +174,4 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
   return fit;
 }
 
-}  // namespace petzval
+}  // namespace petzval::fit_detail
