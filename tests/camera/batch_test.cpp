@@ -17,6 +17,8 @@
 #include "camera_samples.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/iris/iris.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "settings.hpp"
 #include "tilted_films.hpp"
 
@@ -76,6 +78,11 @@ std::vector<Case> cases() {
   add("plain", models(), {{"upright", upright}, {"tilted", tilted}, {"travelling", travels}}, {.lens = double_gauss});
   add("aspheric", models(), {{"upright", upright}, {"tilted", tilted_by(shifted, 3, -2)}},
       {.lens = [] { return focused("modern_58mm_f0.95"); }});
+
+  const auto bladed = [double_gauss] {
+    return with_iris(with_f_number(double_gauss(), 2.4), {.blades = 5, .roundness = 0.2, .rotation_rad = 0.7});
+  };
+  add("blades", each_kind, {{"upright", upright}, {"tilted", tilted}}, {.lens = bladed});
 
   const Film small{.width_mm = 20, .height_mm = 14};
   add("cylinders",
