@@ -130,27 +130,6 @@ TEST(BladedPupils, AreContinuousOverTheFilm) {
   }
 }
 
-TEST(BladedPupils, DerivativesEqualDifferencesOfTheMiddle) {
-  const FilmPupilTable table = FilmPupilTable::equal_area(vignetting(), corner);
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> unit(0, 1);
-  int kinks = 0;
-  constexpr int count = 300;
-  for (int i = 0; i < count; ++i) {
-    const double r = corner * (0.05 + 0.9 * unit(random)), azimuth = 2 * pi * unit(random);
-    const double u = unit(random), v = unit(random), step = 1e-5;
-    const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
-    const auto at = [&](double x, double y) { return table.middle({film.x + x, film.y + y}); };
-    const auto [by_x, by_y] = table.derivatives(film, u, v);
-    const Vec2<double> right = at(step, 0), left = at(-step, 0), up = at(0, step), down = at(0, -step);
-    const double error = std::hypot((right.x - left.x) / (2 * step) - by_x[0],
-                                    (right.y - left.y) / (2 * step) - by_x[1], (up.x - down.x) / (2 * step) - by_y[0]) +
-                         std::abs((up.y - down.y) / (2 * step) - by_y[1]);
-    kinks += error > 1e-3;  // on borders of cells
-  }
-  EXPECT_LE(kinks, 3);
-}
-
 TEST(BladedPupils, RoundStopIsUsedForTiltedFilmsAndOnRequest) {
   const Lens lens = vignetting();
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner);

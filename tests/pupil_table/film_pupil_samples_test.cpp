@@ -159,32 +159,4 @@ TEST_P(SampledTable, PositionsMapBackToTheirSamples) {
   }
 }
 
-class MovingSamples : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(MovingSamples, DerivativesEqualDifferencesOfTheMiddle) {
-  const Lens lens = data_lens(GetParam());
-  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 7);
-  std::mt19937_64 random(11);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (int i = 0; i < 200; ++i) {
-    const FilmPoint film{9 * unit(random) - 4.5, 9 * unit(random) - 4.5};
-    const double u = unit(random), v = unit(random), h = 1e-6;
-    const auto motion = table.derivatives(film, u, v);
-    const auto at = [&](double dx, double dy) { return table.middle({film.x + dx, film.y + dy}); };
-    const Vec2<double> right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
-    // Skips differences across a node of the table.
-    const double slack = 1e-6 + 0.3 *
-                                    (std::hypot(right.x + left.x - 2 * at(0, 0).x, above.x + below.x - 2 * at(0, 0).x,
-                                                right.y + left.y - 2 * at(0, 0).y) +
-                                     std::abs(above.y + below.y - 2 * at(0, 0).y)) /
-                                    h;
-    EXPECT_NEAR(motion.by_film_x[0], (right.x - left.x) / (2 * h), slack);
-    EXPECT_NEAR(motion.by_film_x[1], (right.y - left.y) / (2 * h), slack);
-    EXPECT_NEAR(motion.by_film_y[0], (above.x - below.x) / (2 * h), slack);
-    EXPECT_NEAR(motion.by_film_y[1], (above.y - below.y) / (2 * h), slack);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(FilmPupilTable, MovingSamples, ::testing::Values("fisheye_8mm_f2.8", "anamorphic_60mm_2x"));
-
 }  // namespace film_pupil_samples_test
