@@ -21,8 +21,8 @@ MODULES = ("trace", "pupil", "pupil_table", "focus", "polynomial", "camera", "ir
 OTHERS = ("analysis", "core", "figure", "io", "lens", "paraxial", "prescription")  # only with --modules
 # Test programs that depend on these modules. Hashes of bits detect every change of rounding: they run last, and changes that only
 # they detect are counted separately.
-PROGRAMS = MODULES + ("lens", "paraxial", "analysis", "bits")
-LIBRARIES = ("petzval-core", "petzval-blur", "petzval-figure", "petzval-fit", "petzval-image")
+PROGRAMS = MODULES + ("lens", "paraxial", "analysis", "c", "bits")
+LIBRARIES = ("petzval-core", "petzval-blur", "petzval-c", "petzval-figure", "petzval-fit", "petzval-image")
 WANTED = 90.0  # per cent
 QUICK = 0.5  # seconds: tests up to this time run first
 LONGEST = 1.0  # seconds: longer tests of other modules do not run

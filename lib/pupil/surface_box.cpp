@@ -15,7 +15,7 @@ double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance)
   for (const LensSurface& s : lens.surfaces()) {
     if (std::isfinite(s.semi_diameter)) widest = std::max(widest, s.semi_diameter);
   }
-  return 4 * widest;
+  return widest;
 }
 
 SurfaceBox surface_box(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {

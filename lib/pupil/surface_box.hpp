@@ -9,7 +9,7 @@
 
 namespace petzval::pupil_detail {
 
-/// Half height of an outer surface through which light enters: its semi-diameter or, if it has no rim, four times the
+/// Half height of an outer surface through which light enters: its semi-diameter or, if it has no rim, the
 /// largest semi-diameter of any rim or pupil.
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 

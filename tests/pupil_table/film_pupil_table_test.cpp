@@ -345,6 +345,8 @@ TEST(FilmPupilTable, RefusesInvalidInput) {
   expect_tokens(refusals(space, {{0, 5}}, 0, {nan}), {"pupil table", "wavelength", "nan"});
   expect_tokens(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 500, 400}),
                 {"pupil table", "wavelength 2", 400, "nm"});
+  expect_tokens(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 400, 500}),
+                {"pupil table", "wavelength 1", 400, "nm"});
 
   std::vector<std::vector<PupilDisc>> lists{{}};
   expect_error([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }, {"pupil table", "wavelength 0", "disc"});
