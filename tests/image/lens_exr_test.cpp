@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "distorting_lenses.hpp"
+#include "../exports/distorting_lenses.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
