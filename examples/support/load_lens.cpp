@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "files.hpp"
-#include "petzval/analysis/match_glasses.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"

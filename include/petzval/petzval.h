@@ -369,8 +369,9 @@ PETZVAL_C_API petzval_status petzval_camera_get_info(const petzval_camera* camer
  */
 PETZVAL_C_API petzval_status petzval_camera_set_focus(petzval_camera* camera, double opens_mm, double closes_mm);
 /**
- * Writes the set-up of a camera: prescription, glasses, settings. Another process with the same version of the library
- * makes the same camera from it, whose rays are equal to the bit on a processor with the same instruction sets.
+ * Writes the set-up of a camera as JSON: prescription, glasses, settings. Another process with the same version of the
+ * library makes the same camera from it, whose rays are equal to the bit on a processor with the same instruction sets.
+ * Set-ups in reports of the program petzval are read as well; they name lens files, which are then opened.
  *
  * - bytes: may be NULL if capacity is 0
  * - length: bytes that the set-up needs; may be NULL

@@ -58,6 +58,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/iris/iris.hpp"

@@ -14,14 +14,11 @@
 namespace petzval::c_detail {
 namespace {
 
-HostFrame frame_of(const petzval_camera_options& options, const Lens& lens) {
+HostFrame frame_of(const HostOptions& host, const Lens& lens) {
   constexpr std::array hosts{Host::arnold, Host::pbrt, Host::mitsuba, Host::arnold};
-  if (options.frame < 0 || options.frame > PETZVAL_FRAME_ARNOLD) {
-    bad_argument("frame = " + std::to_string(options.frame) + "; must be PETZVAL_FRAME_...");
-  }
-  const bool of_lens = options.frame == PETZVAL_FRAME_LENS;
+  const bool of_lens = host.frame == PETZVAL_FRAME_LENS;
   FrameOrigin origin = FrameOrigin::front_vertex;
-  switch (distance_origin(options.origin, "origin")) {
+  switch (host.origin) {
     case DistanceOrigin::film: origin = FrameOrigin::film; break;
     case DistanceOrigin::entrance_pupil: origin = FrameOrigin::entrance_pupil; break;
     default: break;
@@ -29,16 +26,27 @@ HostFrame frame_of(const petzval_camera_options& options, const Lens& lens) {
   if (of_lens && origin != FrameOrigin::front_vertex) {
     bad_argument("origin is not PETZVAL_FROM_FRONT_VERTEX; must be, in the frame of the lens");
   }
-  const Host host = hosts[static_cast<std::size_t>(options.frame)];
-  if (options.units_per_mm != 0) return {host, lens, origin, options.units_per_mm};
-  return of_lens ? HostFrame(host, lens, origin, 1) : HostFrame(host, lens, origin);
+  const Host kind = hosts[static_cast<std::size_t>(host.frame)];
+  if (host.units_per_mm != 0) return {kind, lens, origin, host.units_per_mm};
+  return of_lens ? HostFrame(kind, lens, origin, 1) : HostFrame(kind, lens, origin);
 }
 
-CameraOptions camera_options(const CameraSettings& settings) {
-  const petzval_camera_options& own = settings.options;
-  const auto model = model_named(settings.model);
-  if (!model)
-    bad_argument("model = \"" + settings.model + "\"; must be a name such as exact_float, thin or polynomial_7");
+HostOptions host_options(const petzval_camera_options& options) {
+  if (options.frame < 0 || options.frame > PETZVAL_FRAME_ARNOLD) {
+    bad_argument("frame = " + std::to_string(options.frame) + "; must be PETZVAL_FRAME_...");
+  }
+  return {.frame = options.frame,
+          .origin = distance_origin(options.origin, "origin"),
+          .near_far_origin = distance_origin(options.near_far_origin, "near_far_origin"),
+          .units_per_mm = options.units_per_mm,
+          .near_mm = options.near_mm,
+          .far_mm = options.far_mm};
+}
+
+CameraOptions camera_options(const petzval_camera_options& own) {
+  const std::string name = own.model ? own.model : "exact_float";
+  const auto model = model_named(name);
+  if (!model) bad_argument("model = \"" + name + "\"; must be a name such as exact_float, thin or polynomial_7");
   if (own.normalisation < 0 || own.normalisation > PETZVAL_UNITY_AT_EACH_WAVELENGTH) {
     bad_argument("normalisation = " + std::to_string(own.normalisation) + "; must be PETZVAL_IRRADIANCE, ...");
   }
@@ -55,22 +63,21 @@ CameraOptions camera_options(const CameraSettings& settings) {
   return options;
 }
 
-bool has_range(const petzval_camera_options& options) { return options.near_mm != 0 || options.far_mm != 0; }
-
-/// The film, with a travel from the far to the near end of the range of focus.
-Film moving_film(const CameraSettings& settings, const Lens& lens) {
-  Film film = film_of(&settings.film);
-  const petzval_camera_options& own = settings.options;
-  const FocusOptions from{.origin = distance_origin(own.near_far_origin, "near_far_origin")};
-  if (!has_range(own)) return film;
+/// The set-up with a travel of the film from the far to the near end of the range of focus.
+CameraSetup with_range(CameraSetup setup, const HostOptions& host, const Lens& lens) {
+  if (!host.has_range()) return setup;
+  Film& film = setup.film;
+  const FocusOptions from{.origin = host.near_far_origin};
   if (!lens.focus_positions().empty()) {
     throw Error(lens.name() + ": near_mm and far_mm; must be 0 for a lens that focuses by moving groups");
   }
   if (film.z_mm) throw Error(lens.name() + ": has_z = 1; must be 0 for a range of focus, which sets the film");
-  if (!(own.near_mm > 0 && own.far_mm > own.near_mm)) bad_argument("far_mm must be above near_mm, and near_mm above 0");
-  film.z_mm = with_focus(lens, own.far_mm, from).film_z();
-  film.travel_mm = with_focus(lens, own.near_mm, from).film_z() - *film.z_mm;
-  return film;
+  if (!(host.near_mm > 0 && host.far_mm > host.near_mm)) {
+    bad_argument("far_mm must be above near_mm, and near_mm above 0");
+  }
+  film.z_mm = with_focus(lens, host.far_mm, from).film_z();
+  film.travel_mm = with_focus(lens, host.near_mm, from).film_z() - *film.z_mm;
+  return setup;
 }
 
 Wavelength wavelength_of(double nm) { return nm == 0 ? Wavelength() : Wavelength::nm(nm); }
@@ -201,28 +208,27 @@ FieldPoint field_of(const CameraContents& own, const Vec3<double>& point, bool d
 
 }  // namespace
 
-CameraContents::CameraContents(CameraSettings given)
-    : CameraContents(given, given.lens.applied(given.lens.compiled())) {}
-
-CameraContents::CameraContents(CameraSettings given, const Lens& lens)
-    : settings(std::move(given)),
-      camera(lens, moving_film(settings, lens), camera_options(settings)),
-      frame(frame_of(settings.options, camera.lens())) {
+CameraContents::CameraContents(CameraSetup given, const HostOptions& options,
+                               std::shared_ptr<const GlassCatalogue> of_lens, const Lens& lens)
+    : setup(std::move(given)),
+      host(options),
+      glasses(std::move(of_lens)),
+      camera(petzval::camera(with_range(setup, host, lens), lens)),
+      frame(frame_of(host, camera.lens())) {
   area = 1 / (frame.units_per_mm() * frame.units_per_mm());
-  if (!has_range(settings.options)) return;
-  if (settings.opens_mm != 0) {
-    set_focus(settings.opens_mm, settings.closes_mm);
+  if (!host.has_range()) return;
+  if (host.opens_mm != 0) {
+    set_focus(host.opens_mm, host.closes_mm);
     return;
   }
   opens = closes = std::clamp((lens.film_z() - camera.film().z()) / camera.film().travel_mm, 0.0, 1.0);
 }
 
 void CameraContents::set_focus(double opens_mm, double closes_mm) {
-  if (!has_range(settings.options))
-    bad_argument("near_mm and far_mm are 0, so that the focus is fixed; must be a range");
-  const FocusOptions from{.origin = distance_origin(settings.options.near_far_origin, "near_far_origin")};
+  if (!host.has_range()) bad_argument("near_mm and far_mm are 0, so that the focus is fixed; must be a range");
+  const FocusOptions from{.origin = host.near_far_origin};
   const auto fraction = [&](double distance) {
-    if (!(distance >= settings.options.near_mm * (1 - 1e-9) && distance <= settings.options.far_mm * (1 + 1e-9))) {
+    if (!(distance >= host.near_mm * (1 - 1e-9) && distance <= host.far_mm * (1 + 1e-9))) {
       throw Error("focus distance = " + std::to_string(distance) + "; must be from near_mm to far_mm");
     }
     const double z = with_focus(camera.lens(), distance, from).film_z();
@@ -230,7 +236,7 @@ void CameraContents::set_focus(double opens_mm, double closes_mm) {
   };
   const double open = fraction(opens_mm), close = opens_mm == closes_mm ? open : fraction(closes_mm);
   opens = open, closes = close;
-  settings.opens_mm = opens_mm, settings.closes_mm = closes_mm;
+  host.opens_mm = opens_mm, host.closes_mm = closes_mm;
 }
 
 }  // namespace petzval::c_detail
@@ -243,14 +249,12 @@ petzval_status petzval_camera_create(const petzval_lens* lens, const petzval_fil
   return guarded(results(camera), [&] {
     given(camera, "camera");
     const LensContents& own = *live(lens, "lens").contents;
-    CameraSettings settings{.lens = own.settings,
-                            .film = received(film, "petzval_film"),
-                            .options = received(options, "petzval_camera_options"),
-                            .model = "exact_float"};
-    if (settings.options.model) settings.model = settings.options.model;
-    settings.options.model = nullptr;
+    const auto options_in = received(options, "petzval_camera_options");
+    CameraSetup setup = own.setup;
+    setup.film = film_of(film), setup.camera = camera_options(options_in);
     auto handle = std::make_unique<petzval_camera>();
-    handle->contents = std::make_unique<CameraContents>(std::move(settings), own.lens);
+    handle->contents =
+        std::make_unique<CameraContents>(std::move(setup), host_options(options_in), own.glasses, own.lens);
     *camera = handle.release();
   });
 }
@@ -263,7 +267,7 @@ petzval_status petzval_camera_get_info(const petzval_camera* camera, petzval_cam
     const Film film = own.camera.film().at(own.opens);
     petzval_camera_info found{};
     found.size = sizeof found;
-    copy_text(own.settings.model, found.model);
+    copy_text(name(own.camera.model()), found.model);
     found.film_width_mm = film.width_mm, found.film_height_mm = film.height_mm;
     found.film_z_mm = film.z(), found.film_area_mm2 = film.area_mm2();
     found.columns = film.columns, found.rows = film.rows;
@@ -283,7 +287,7 @@ petzval_status petzval_camera_write(const petzval_camera* camera, char* bytes, s
                                     std::size_t* length) {
   return guarded(results(bytes, capacity), [&] {
     if (length) *length = 0;
-    copy_bytes(write_settings(live(camera, "camera").contents->settings), bytes, capacity, length);
+    copy_bytes(write_camera(*live(camera, "camera").contents), bytes, capacity, length);
   });
 }
 
@@ -291,7 +295,7 @@ petzval_status petzval_camera_read(const char* bytes, std::size_t count, petzval
   return guarded(results(camera), [&] {
     given(camera, "camera");
     auto handle = std::make_unique<petzval_camera>();
-    handle->contents = std::make_unique<CameraContents>(read_settings({&given(bytes, "bytes"), count}));
+    handle->contents = read_camera({&given(bytes, "bytes"), count});
     *camera = handle.release();
   });
 }
@@ -458,7 +462,7 @@ petzval_status petzval_camera_point_image(const petzval_camera* camera, const do
   const auto clear = [&] { reset(psf), reset(image, floats); };
   return guarded(clear, [&] {
     const CameraContents& own = *live(camera, "camera").contents;
-    if (has_range(own.settings.options)) {
+    if (own.host.has_range()) {
       bad_argument("a camera with near_mm and far_mm has no image of a point; make one for a fixed focus");
     }
     const auto in = received(options, "petzval_psf_options");

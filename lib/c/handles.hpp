@@ -9,7 +9,6 @@
 #include <exception>
 #include <memory>
 #include <new>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,9 +19,9 @@
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/petzval.h"
-#include "petzval/prescription/prescription.hpp"
 
 namespace petzval::c_detail {
 
@@ -161,60 +160,46 @@ void release(Handle* handle) noexcept {
 #endif
 }
 
-/// All that defines a lens of the C interface, which can be written and read.
-struct LensSettings {
-  Prescription prescription;
-  std::vector<double> wavelengths_nm;
-  double primary_nm = 0;
-  bool clamp = false, abbe = false;
-  int configuration = 0;
-  std::shared_ptr<const GlassCatalogue> glasses;  ///< null: glass_tables()
-  std::optional<double> f_number;
-  Iris iris;
-  struct Focus {
-    double distance_mm = 0;
-    DistanceOrigin origin = DistanceOrigin::front_vertex;
-  };
-  std::optional<Focus> focus;
-
-  /// The lens as compiled, then with its iris, f-number and focus.
-  Lens compiled() const;
-  Lens applied(const Lens& compiled) const;
-};
-
-struct CameraSettings {
-  LensSettings lens;
-  petzval_film film;
-  petzval_camera_options options;
-  std::string model;
-  double opens_mm = 0, closes_mm = 0;  ///< last petzval_camera_set_focus(); 0: none
-};
-
 DistanceOrigin distance_origin(std::int32_t value, const char* name);
 Film film_of(const petzval_film* film);
-CameraSettings read_settings(std::string_view bytes);
-std::string write_settings(const CameraSettings& settings);
 
 struct LensContents {
-  LensSettings settings;
-  Lens base, lens;  ///< without and with the settings of iris, f-number and focus
+  CameraSetup setup;                              ///< its lens, iris, f-number and focus
+  std::shared_ptr<const GlassCatalogue> glasses;  ///< null: glass_tables()
+  Lens base, lens;                                ///< without and with the settings of iris, f-number and focus
+};
+
+/// Options of a camera of the C interface that a CameraSetup does not have.
+struct HostOptions {
+  std::int32_t frame = 0;
+  DistanceOrigin origin = DistanceOrigin::front_vertex, near_far_origin = DistanceOrigin::front_vertex;
+  double units_per_mm = 0, near_mm = 0, far_mm = 0;
+  double opens_mm = 0, closes_mm = 0;  ///< last petzval_camera_set_focus(); 0: none
+
+  bool has_range() const noexcept { return near_mm != 0 || far_mm != 0; }
 };
 
 struct CameraContents {
-  explicit CameraContents(CameraSettings given);
-  CameraContents(CameraSettings given, const Lens& lens);
+  CameraContents(CameraSetup setup, const HostOptions& host, std::shared_ptr<const GlassCatalogue> glasses,
+                 const Lens& lens);
   void set_focus(double opens, double closes);
   /// Fraction of the travel of the film at a time of the exposure.
   double film_time(double time) const noexcept {
     return opens + std::clamp(time > 0 ? time : 0.0, 0.0, 1.0) * (closes - opens);
   }
 
-  CameraSettings settings;
+  CameraSetup setup;
+  HostOptions host;
+  std::shared_ptr<const GlassCatalogue> glasses;  ///< of the lens
   Camera camera;
   HostFrame frame;
   double opens = 0, closes = 1;
   double area = 1;  ///< 1/mm^2 in 1/unit^2
 };
+
+/// The camera as JSON, with the glasses that its lens uses, and the camera of such a text.
+std::string write_camera(const CameraContents& camera);
+std::unique_ptr<CameraContents> read_camera(std::string_view bytes);
 
 }  // namespace petzval::c_detail
 

@@ -24,23 +24,19 @@ std::string& last_message() {
   return message;
 }
 
-LensSettings settings_of(Prescription prescription, const petzval_lens_options& options,
-                         std::shared_ptr<const GlassCatalogue> glasses) {
-  LensSettings settings{};
-  settings.prescription = std::move(prescription), settings.glasses = std::move(glasses);
+LensSource source_of(Prescription prescription, const petzval_lens_options& options) {
+  LensSource source{.prescription = std::move(prescription)};
   if (options.wavelength_count > 0) {
     const double* const nm = &given(options.wavelengths_nm, "wavelengths_nm");
     if (options.wavelength_count > 65000) bad_argument("wavelength_count is above 65000");
-    settings.wavelengths_nm.assign(nm, nm + options.wavelength_count);
-  } else {
-    settings.wavelengths_nm = {settings.prescription.reference_wavelength_nm};
+    source.wavelengths_nm.assign(nm, nm + options.wavelength_count);
   }
-  settings.primary_nm = options.primary_nm;
-  settings.clamp = flag(options.clamp_wavelengths, "clamp_wavelengths");
-  settings.abbe = !flag(options.require_glasses, "require_glasses");
+  if (options.primary_nm != 0) source.primary_nm = options.primary_nm;
+  source.clamp_wavelengths = flag(options.clamp_wavelengths, "clamp_wavelengths");
+  source.require_glasses = flag(options.require_glasses, "require_glasses");
   if (options.configuration < 0) bad_argument("configuration is negative; must be 0, or a number from 1");
-  settings.configuration = std::max(1, options.configuration) - 1;
-  return settings;
+  if (options.configuration > 0) source.configuration = std::to_string(options.configuration - 1);
+  return source;
 }
 
 /// @param read  reads the prescription with the ReadOptions given
@@ -52,22 +48,23 @@ void open_lens(const petzval_lens_options* options, petzval_lens** lens, const R
   if (own.glasses) glasses = live(own.glasses, "glasses").contents;
   const ReadOptions how{
       .strict = flag(own.strict, "strict"), .glasses = glasses.get(), .entry = own.entry ? own.entry : ""};
-  LensSettings settings = settings_of(read(how), own, std::move(glasses));
-  const Lens compiled = settings.compiled();
+  CameraSetup setup{.lens = source_of(read(how), own)};
+  const Lens compiled = compile(setup, glasses.get());
   auto handle = std::make_unique<petzval_lens>();
-  handle->contents = std::make_unique<LensContents>(LensContents{std::move(settings), compiled, compiled});
+  handle->contents =
+      std::make_unique<LensContents>(LensContents{std::move(setup), std::move(glasses), compiled, compiled});
   *lens = handle.release();
 }
 
 /// Changes the settings of a lens. If the change is refused, the lens keeps its settings.
 template <class Change>
-petzval_status change(petzval_lens* lens, const Change& change_settings) {
+petzval_status change(petzval_lens* lens, const Change& change_setup) {
   return guarded([&] {
     LensContents& contents = *live(lens, "lens").contents;
-    LensSettings changed = contents.settings;
-    change_settings(changed);
-    contents.lens = changed.applied(contents.base);
-    contents.settings = std::move(changed);
+    CameraSetup changed = contents.setup;
+    change_setup(changed);
+    contents.lens = prepared(changed, contents.base);
+    contents.setup = std::move(changed);
   });
 }
 
@@ -95,22 +92,6 @@ void copy_bytes(std::string_view bytes, char* to, std::size_t capacity, std::siz
                                          std::to_string(bytes.size())};
   }
   std::memcpy(to, bytes.data(), bytes.size());
-}
-
-Lens LensSettings::compiled() const {
-  return compile(prescription, wavelengths_nm,
-                 {.glasses = glasses.get(),
-                  .missing_glass = abbe ? MissingGlass::abbe : MissingGlass::error,
-                  .configuration = configuration,
-                  .clamp_wavelengths = clamp,
-                  .primary_nm = primary_nm != 0 ? std::optional(primary_nm) : std::nullopt});
-}
-
-Lens LensSettings::applied(const Lens& compiled) const {
-  Lens lens = iris.blades != 0 ? with_iris(compiled, iris) : compiled;
-  if (f_number) lens = with_f_number(lens, *f_number);
-  if (focus) lens = with_focus(lens, focus->distance_mm, {.origin = focus->origin});
-  return lens;
 }
 
 DistanceOrigin distance_origin(std::int32_t value, const char* name) {
@@ -223,7 +204,9 @@ petzval_status petzval_lens_get_info(const petzval_lens* handle, petzval_lens_in
     const LensContents& contents = *live(handle, "lens").contents;
     const Lens& lens = contents.lens;
     const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-    const Prescription own = configured(contents.settings.prescription, contents.settings.configuration);
+    const Prescription& all = *contents.setup.lens.prescription;
+    const Prescription own =
+        configured(all, configuration_of(contents.setup.lens, all).value_or(ConfigurationChoice()));
     petzval_lens_info found{};
     found.size = sizeof found;
     found.focal_length_mm = first.effective_focal_length;
@@ -281,7 +264,7 @@ petzval_status petzval_lens_get_text(const petzval_lens* handle, std::int32_t ki
   return guarded(results(text, capacity), [&] {
     if (length) *length = 0;
     const LensContents& contents = *live(handle, "lens").contents;
-    const auto& imported = contents.settings.prescription.imported;
+    const auto& imported = contents.setup.lens.prescription->imported;
     std::string found;
     switch (kind) {
       case PETZVAL_TEXT_NAME: found = contents.lens.name(); break;
@@ -293,7 +276,7 @@ petzval_status petzval_lens_get_text(const petzval_lens* handle, std::int32_t ki
         break;
       case PETZVAL_TEXT_CLAMPED_GLASS: found = at(contents.lens.clamped_glasses(), index); break;
       case PETZVAL_TEXT_MISSING_GLASS: found = at(contents.lens.missing_glasses(), index); break;
-      case PETZVAL_TEXT_PRESCRIPTION: found = format_prescription(contents.settings.prescription); break;
+      case PETZVAL_TEXT_PRESCRIPTION: found = format_prescription(*contents.setup.lens.prescription); break;
       default: bad_argument("kind = " + std::to_string(kind) + "; must be PETZVAL_TEXT_...");
     }
     const bool ended = found.empty() && kind != PETZVAL_TEXT_NAME;
@@ -303,19 +286,19 @@ petzval_status petzval_lens_get_text(const petzval_lens* handle, std::int32_t ki
 }
 
 petzval_status petzval_lens_set_f_number(petzval_lens* lens, double f_number) {
-  return change(lens, [&](LensSettings& settings) { settings.f_number = f_number; });
+  return change(lens, [&](CameraSetup& setup) { setup.f_number = f_number; });
 }
 
 petzval_status petzval_lens_set_iris(petzval_lens* lens, std::int32_t blades, double roundness, double rotation) {
-  return change(lens, [&](LensSettings& settings) {
-    settings.iris = {.blades = blades, .roundness = roundness, .rotation_rad = rotation};
-    iris_area(settings.iris);  // checks the values
+  return change(lens, [&](CameraSetup& setup) {
+    setup.iris = {.blades = blades, .roundness = roundness, .rotation_rad = rotation};
+    iris_area(setup.iris);  // checks the values
   });
 }
 
 petzval_status petzval_lens_set_focus(petzval_lens* lens, double distance_mm, std::int32_t origin) {
-  return change(lens, [&](LensSettings& settings) {
-    settings.focus = {.distance_mm = distance_mm, .origin = distance_origin(origin, "origin")};
+  return change(lens, [&](CameraSetup& setup) {
+    setup.focus_mm = distance_mm, setup.focus.origin = distance_origin(origin, "origin");
   });
 }
 

@@ -317,6 +317,10 @@ void JsonTree::fail(const std::string& path, const std::string& message, const s
               (location.empty() ? "" : ": ") + message);
 }
 
+void JsonTree::fail_at(const std::string& path, const std::string& message) const {
+  throw Error(where_ + json_position(text_, path) + ": " + message);
+}
+
 void JsonTree::refuse(const std::string& path, const std::string& value, const std::string& rule) const {
   throw Error(where_ + json_position(text_, path) + ": " +
               refusal(shortened(words_(path), longest_words), value, rule));
@@ -388,7 +392,7 @@ void JsonPart::each_member(const std::function<void(const std::string&, const Js
   for (const auto& [key, value] : json_.items()) read(key, JsonPart(*this, key, value));
 }
 
-void JsonPart::read(std::initializer_list<JsonField> fields) const {
+void JsonPart::read(const std::vector<JsonField>& fields) const {
   if (!json_.is_object()) refuse("an object");
   for (const JsonField& field : fields) {
     if (const auto member = json_.find(field.name); member != json_.end()) {
@@ -405,6 +409,23 @@ void JsonPart::read(std::initializer_list<JsonField> fields) const {
     if (!field.required || json_.contains(field.name)) continue;
     fail("key " + in_quotes(field.name) + " is missing");
   }
+}
+
+std::string words_of(std::string_view path) {
+  std::string words;
+  while (!path.empty()) {
+    const std::size_t end = std::min(path.find('.'), path.size()), bracket = path.substr(0, end).find('[');
+    std::string_view list = path.substr(0, std::min(bracket, end));
+    words += words.empty() ? "" : ": ";
+    if (bracket != std::string_view::npos) {
+      list.remove_suffix(list.ends_with("ases") ? 2 : list.ends_with('s') ? 1 : 0);
+      words.append(list).append(1, ' ').append(path.substr(bracket + 1, end - bracket - 2));
+    } else {
+      words += list;
+    }
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  return words;
 }
 
 std::string json_position(std::string_view json, std::string path, bool key) {

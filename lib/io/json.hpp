@@ -4,11 +4,11 @@
 #include <concepts>
 #include <cstddef>
 #include <functional>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "petzval/core/config.hpp"
 
@@ -35,6 +35,8 @@ class PETZVAL_API JsonTree {
   /// Throws Error: "lens.json:11:8: surface 1: message".
   /// @param key  path of a member whose key has the position; empty: the position of the value
   [[noreturn]] void fail(const std::string& path, const std::string& message, const std::string& key = {}) const;
+  /// Throws Error: "lens.json:11:8: message", with the position of the value at a path.
+  [[noreturn]] void fail_at(const std::string& path, const std::string& message) const;
   /// Throws Error: "lens.json:11:8: surface 1: radius = value; must be rule".
   [[noreturn]] void refuse(const std::string& path, const std::string& value, const std::string& rule) const;
   /// True if the value at a path is not in quotes in the text.
@@ -76,11 +78,15 @@ class PETZVAL_API JsonPart {
   /// Calls `read` for each member of an object, with its key.
   void each_member(const std::function<void(const std::string&, const JsonPart&)>& read) const;
   /// Reads the members of an object, in the order of `fields`. Then refuses unknown and missing keys.
-  void read(std::initializer_list<JsonField> fields) const;
+  void read(const std::vector<JsonField>& fields) const;
 
   /// Throws Error: "lens.json:11:8: message", with the words of the path in front of the message.
   [[noreturn]] void fail(const std::string& message) const { tree_.fail(path_, message); }
   [[noreturn]] void refuse(const std::string& rule) const;
+  /// Throws Error: "lens.json:11:8: message", with the position of an inner path.
+  [[noreturn]] void fail_at(const std::string& path, const std::string& message) const {
+    tree_.fail_at(path_ + (path_.empty() ? "" : ".") + path, message);
+  }
 
  private:
   /// True for Infinity, inf and NaN without quotes.
@@ -110,6 +116,9 @@ inline constexpr bool required = true;
 
 /// Text in quotes for a message, shortened if it is long.
 PETZVAL_API std::string in_quotes(std::string_view text);
+
+/// The words of a path in messages: "surface 1: aspheric 0: order" for "surfaces[1].aspheric[0].order".
+PETZVAL_API std::string words_of(std::string_view path);
 
 /// Line and column (":11:8") of the value at a path in a JSON text, or of its key, for messages. If the text has no
 /// such value, the result is the position of the nearest list or object on the path.

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/lens_json.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <limits>
 #include <system_error>
 
-#include "json.hpp"
+#include "json_members.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace io_detail {
 
-using io_detail::in_quotes;
-using io_detail::required;
-using Part = io_detail::JsonPart;
-
-constexpr std::string_view format_name = "petzval-lens 1";
-constexpr int longest_list = 10'000;
-
+constexpr std::string_view lens_format = "petzval-lens 1";
+constexpr int most_entries = 10'000;
+constexpr Range list_index{0, most_entries, "a whole number from 0 to 10000"};
+constexpr Range order_rule{2, 40, "a whole number from 2 to 40"},
+    line_rule{0, 2e9, "a whole number from 0 to 2000000000"};
+constexpr Range radius_rule{any_number.least, any_number.most, "a number (0 for a plane)"};
+constexpr Range distance_rule{any_number.least, std::numeric_limits<double>::infinity(),
+                              "a number, or null for infinity"};
 constexpr std::array aperture_settings{ApertureSetting::entrance_pupil_diameter,
                                        ApertureSetting::f_number,
                                        ApertureSetting::working_f_number,
@@ -30,188 +30,130 @@ constexpr std::array aperture_settings{ApertureSetting::entrance_pupil_diameter,
                                        ApertureSetting::stop_size};
 constexpr std::array field_kinds{FieldKind::angle_deg, FieldKind::object_height, FieldKind::paraxial_image,
                                  FieldKind::real_image_height};
+constexpr std::array curved_sections{Section::x, Section::y};
 
-/// Stores the value of an enumeration by its name.
-template <class Enum, std::size_t count>
-auto one_of(const std::array<Enum, count>& all, Enum& to) {
-  return [&all, &to](const Part& part) {
-    const std::string text = part.text();
-    std::string known;
-    for (const Enum entry : all) {
-      if (name(entry) == text) return void(to = entry);
-      known += (known.empty() ? "" : ", ") + std::string(name(entry));
-    }
-    part.refuse("one of " + known);
-  };
-}
-
-/// Reads a list of objects, each by `read`.
-template <class Entry>
-auto list_of(std::vector<Entry>& list, void (*read)(const Part&, Entry&)) {
-  return [&list, read](const Part& part) { part.each([&](const Part& entry) { read(entry, list.emplace_back()); }); };
-}
-
-/// Reads an object that may be absent.
-template <class Value>
-auto object_of(std::optional<Value>& value, void (*read)(const Part&, Value&)) {
-  return [&value, read](const Part& part) { read(part, value.emplace()); };
-}
-
-auto texts(std::vector<std::string>& list) {
-  return [&list](const Part& part) { part.each([&](const Part& entry) { entry.get(list.emplace_back()); }); };
-}
-
-auto whole(int& to, int least = 0, int most = longest_list) {
-  return [&to, least, most](const Part& part) { to = part.whole_number(least, most); };
-}
-
-auto radius(auto& to) {
-  return [&to](const Part& part) { to = part.number("a number (0 for a plane)"); };
-}
-
-/// A number of a change: it must not be null, as an absent number keeps the value of the row.
-auto changed(std::optional<double>& to) {
-  return [&to](const Part& part) { to = part.number(); };
-}
-
-void read_medium(const Part& part, Medium& medium) {
-  part.read({{"glass", medium.glass},
-             {"catalogue", medium.catalogue},
-             {"glass_origin", medium.glass_origin},
-             {"nd", medium.nd},
-             {"vd", medium.vd}});
-}
-
-void read_warning(const Part& part, ImportWarning& warning) {
-  part.read({{"line", whole(warning.line, 0, 2'000'000'000)},
-             {"command", warning.command},
-             {"message", warning.message, required}});
-}
-
-void read_origin(const Part& part, FileOrigin& from) {
-  part.read({{"format", from.format, required},
-             {"file", from.file},
-             {"entry", from.entry},
-             {"units", from.units},
-             {"title", from.title},
-             {"notes", texts(from.notes)},
-             {"warnings", list_of(from.warnings, read_warning)}});
-}
-
-void read_aperture(const Part& part, DesignAperture& aperture) {
-  part.read({{"setting", one_of(aperture_settings, aperture.setting), required}, {"value", aperture.value, required}});
-}
-
-void read_field(const Part& part, DesignField& field) {
-  part.read({{"x", field.x},
-             {"y", field.y},
-             {"weight", field.weight},
-             {"decentre_x", field.decentre_x},
-             {"decentre_y", field.decentre_y},
-             {"compress_x", field.compress_x},
-             {"compress_y", field.compress_y},
-             {"angle_deg", field.angle_deg}});
-}
-
-void read_wavelength(const Part& part, DesignWavelength& wavelength) {
-  part.read({{"nm", wavelength.nm, required}, {"weight", wavelength.weight}});
-}
-
-void read_design(const Part& part, DesignData& design) {
-  std::optional<double> distance;
-  int primary = static_cast<int>(design.primary_wavelength);
-  part.read({{"aperture", object_of(design.aperture, read_aperture)},
-             {"object_distance_mm", distance},
-             {"field_kind", one_of(field_kinds, design.field_kind)},
-             {"fields", list_of(design.fields, read_field)},
-             {"wavelengths", list_of(design.wavelengths, read_wavelength)},
-             {"primary_wavelength", whole(primary)}});
-  design.object_distance_mm = distance.value_or(std::numeric_limits<double>::infinity());
-  design.primary_wavelength = static_cast<std::size_t>(primary);
-}
-
-void read_term(const Part& part, AsphereTerm& term) {
-  part.read({{"order", whole(term.order, 2, 40), required}, {"coefficient", term.coefficient, required}});
-}
-
-void read_layer(const Part& part, CoatingLayer& layer) {
-  part.read({{"index", layer.index, required},
-             {"absorption", layer.absorption},
-             {"thickness_nm", layer.thickness_nm, required}});
-}
-
-void read_reflectance(const Part& part, ReflectanceEntry& entry) {
-  part.read({{"wavelength_nm", entry.wavelength_nm, required}, {"value", entry.reflectance, required}});
-}
-
-void read_coating(const Part& part, Coating& coating) {
-  const std::string word = part.json().is_string() ? part.text() : "";
-  if (word == "none") return;
-  if (word == "mgf2") return void(coating = Coating::quarter_wave());
-  if (!part.json().is_structured()) part.refuse(R"("none", "mgf2" or an object)");
-  part.read(
-      {{"layers", list_of(coating.layers, read_layer)}, {"reflectance", list_of(coating.table, read_reflectance)}});
-  if (coating == Coating{}) {
-    part.fail(R"(must have entries in "layers" or "reflectance"; an uncoated surface is "none")");
+template <Is<Medium> S, class Of>
+void members(S& medium, const Of& of) {
+  of("glass", medium.glass, any_number, Presence::or_null), of("catalogue", medium.catalogue);
+  of("glass_origin", medium.glass_origin);
+  if constexpr (std::is_const_v<S>) {  // air is written with its index
+    of("nd", medium.is_air() ? std::optional(medium.nd.value_or(1)) : medium.nd);
+  } else {
+    of("nd", medium.nd);
   }
+  of("vd", medium.vd, any_number, Presence::or_null);
+}
+template <Is<ImportWarning> S, class Of>
+void members(S& warning, const Of& of) {
+  of("line", warning.line, line_rule), of("command", warning.command);
+  of("message", warning.message, any_number, Presence::needed);
+}
+template <Is<FileOrigin> S, class Of>
+void members(S& from, const Of& of) {
+  of("format", from.format, any_number, Presence::needed), of("file", from.file);
+  of.unless_default("entry", from.entry), of("units", from.units), of("title", from.title);
+  of("notes", from.notes), of("warnings", from.warnings);
+}
+template <Is<DesignAperture> S, class Of>
+void members(S& aperture, const Of& of) {
+  of("setting", aperture.setting, aperture_settings, Presence::needed);
+  of("value", aperture.value, any_number, Presence::needed);
+}
+template <Is<DesignField> S, class Of>
+void members(S& field, const Of& of) {
+  of("x", field.x), of("y", field.y), of("weight", field.weight);
+  of.unless_default("decentre_x", field.decentre_x);
+  of.unless_default("decentre_y", field.decentre_y);
+  of.unless_default("compress_x", field.compress_x);
+  of.unless_default("compress_y", field.compress_y);
+  of.unless_default("angle_deg", field.angle_deg);
+}
+template <Is<DesignWavelength> S, class Of>
+void members(S& wavelength, const Of& of) {
+  of("nm", wavelength.nm, any_number, Presence::needed), of("weight", wavelength.weight);
+}
+template <Is<DesignData> S, class Of>
+void members(S& design, const Of& of) {
+  of("aperture", design.aperture), of("object_distance_mm", design.object_distance_mm, distance_rule);
+  of("field_kind", design.field_kind, field_kinds), of("fields", design.fields);
+  of("wavelengths", design.wavelengths), of("primary_wavelength", design.primary_wavelength, list_index);
+}
+template <Is<AsphereTerm> S, class Of>
+void members(S& term, const Of& of) {
+  of("order", term.order, order_rule, Presence::needed);
+  of("coefficient", term.coefficient, any_number, Presence::needed);
+}
+template <Is<CoatingLayer> S, class Of>
+void members(S& layer, const Of& of) {
+  of("index", layer.index, any_number, Presence::needed);
+  of.unless_default("absorption", layer.absorption);
+  of("thickness_nm", layer.thickness_nm, any_number, Presence::needed);
+}
+template <Is<ReflectanceEntry> S, class Of>
+void members(S& entry, const Of& of) {
+  of("wavelength_nm", entry.wavelength_nm, any_number, Presence::needed);
+  of("value", entry.reflectance, any_number, Presence::needed);
+}
+template <Is<Coating> S, class Of>
+void members(S& coating, const Of& of) {
+  of.unless_default("layers", coating.layers);
+  of.unless_default("reflectance", coating.table);
+}
+template <Is<SurfaceRow> S, class Of>
+void members(S& row, const Of& of) {
+  of("radius", row.radius, radius_rule, Presence::needed), of("thickness", row.thickness, any_number, Presence::needed);
+  members(row.medium, of);
+  of("semi_diameter", row.semi_diameter, any_number, Presence::or_null);
+  of.unless_default("semi_diameter_computed", row.semi_diameter_computed);
+  of("inner_semi_diameter", row.obscuration_semi_diameter), of("conic", row.conic), of("aspheric", row.aspheric);
+  of("stop", row.stop), of.unless_default("mirror", row.mirror), of("comment", row.comment);
+  of.unless_default("curved_in", row.curved_in, curved_sections), of("coating", row.coating);
+}
+template <Is<SurfaceChange> S, class Of>
+void members(S& change, const Of& of) {
+  of("surface", change.surface, list_index, Presence::needed);
+  of("thickness", change.thickness, any_number, Presence::not_null);
+  of("radius", change.radius, radius_rule, Presence::not_null),
+      of("conic", change.conic, any_number, Presence::not_null);
+  of("semi_diameter", change.semi_diameter, any_number, Presence::not_null), of("medium", change.medium);
+}
+template <Is<Configuration> S, class Of>
+void members(S& configuration, const Of& of) {
+  of("name", configuration.name, any_number, Presence::needed), of("focus_of", configuration.focus_of);
+  of("subject_distance_mm", configuration.subject_distance_mm), of("stop", configuration.stop, list_index);
+  of("focal_length_mm", configuration.focal_length_mm), of("f_number", configuration.f_number);
+  of("half_field_deg", configuration.half_field_deg), of("image_diagonal_mm", configuration.image_diagonal_mm);
+  of("changes", configuration.changes);
+}
+template <Is<Prescription> S, class Of>
+void members(S& lens, const Of& of) {
+  of("id", lens.id), of("name", lens.name);
+  of.object("source", [&lens](const auto& source) {
+    source("design", lens.source_design), source("numbers", lens.source_numbers);
+  });
+  of("focal_length_mm", lens.focal_length_mm, any_number, Presence::or_null);
+  of("f_number", lens.f_number, any_number, Presence::or_null);
+  of("half_field_deg", lens.half_field_deg, any_number, Presence::or_null);
+  of("image_diagonal_mm", lens.image_diagonal_mm, any_number, Presence::or_null);
+  of("reference_wavelength_nm", lens.reference_wavelength_nm), of("semi_diameters", lens.semi_diameters);
+  of("stop_size", lens.stop_size), of("image_distance", lens.image_distance), of("glass_names", lens.glass_names);
+  of("notes", lens.notes), of.unless_default("aliases", lens.aliases);
+  of("imported", lens.imported), of.unless_default("design", lens.design);
+  of.unless_default("object_space", lens.object_space);
+  of("surfaces", lens.surfaces, any_number, Presence::needed);
+  of.unless_default("configurations", lens.configurations);
 }
 
-void read_section(const Part& part, Section& section) {
-  const std::string text = part.text();
-  if (text != "x" && text != "y") part.refuse(R"("x" or "y")");
-  section = text == "x" ? Section::x : Section::y;
-}
-
-void read_surface(const Part& part, SurfaceRow& row) {
-  part.read({{"radius", radius(row.radius), required},
-             {"thickness", row.thickness, required},
-             {"glass", row.medium.glass},
-             {"catalogue", row.medium.catalogue},
-             {"glass_origin", row.medium.glass_origin},
-             {"nd", row.medium.nd},
-             {"vd", row.medium.vd},
-             {"semi_diameter", row.semi_diameter},
-             {"semi_diameter_computed", row.semi_diameter_computed},
-             {"inner_semi_diameter", row.obscuration_semi_diameter},
-             {"conic", row.conic},
-             {"aspheric", list_of(row.aspheric, read_term)},
-             {"stop", row.stop},
-             {"mirror", row.mirror},
-             {"curved_in", [&](const Part& section) { read_section(section, row.curved_in); }},
-             {"comment", row.comment},
-             {"coating", object_of(row.coating, read_coating)}});
-}
-
-void read_change(const Part& part, SurfaceChange& change) {
-  part.read({{"surface", whole(change.surface), required},
-             {"thickness", changed(change.thickness)},
-             {"radius", radius(change.radius)},
-             {"conic", changed(change.conic)},
-             {"semi_diameter", changed(change.semi_diameter)},
-             {"medium", object_of(change.medium, read_medium)}});
-}
-
-void read_configuration(const Part& part, Configuration& configuration) {
-  const auto stop = [&](const Part& number) { configuration.stop = number.whole_number(0, longest_list); };
-  part.read({{"name", configuration.name, required},
-             {"focus_of", configuration.focus_of},
-             {"subject_distance_mm", configuration.subject_distance_mm},
-             {"stop", stop},
-             {"focal_length_mm", configuration.focal_length_mm},
-             {"f_number", configuration.f_number},
-             {"half_field_deg", configuration.half_field_deg},
-             {"image_diagonal_mm", configuration.image_diagonal_mm},
-             {"changes", list_of(configuration.changes, read_change)}});
-}
+namespace {
 
 /// The old form of a zoom position: a name, and thicknesses by the numbers of surfaces.
-void read_zoom(const Part& part, std::vector<Configuration>& list) {
+void read_zoom(const JsonPart& part, std::vector<Configuration>& list) {
   Configuration& zoom = list.emplace_back(Configuration{.name = "zoom"});
-  const auto gaps = [&](const Part& object) {
-    object.each_member([&](const std::string& key, const Part& thickness) {
+  const auto gaps = [&](const JsonPart& object) {
+    object.each_member([&](const std::string& key, const JsonPart& thickness) {
       int surface = -1;
       const auto status = std::from_chars(key.data(), key.data() + key.size(), surface).ec;
-      if (status != std::errc() || key != std::to_string(surface) || surface < 0 || surface >= longest_list) {
+      if (status != std::errc() || key != std::to_string(surface) || surface < 0 || surface >= most_entries) {
         object.fail("key " + in_quotes(key) + " must be the number of a surface");
       }
       SurfaceChange& change = zoom.changes.emplace_back();
@@ -220,63 +162,6 @@ void read_zoom(const Part& part, std::vector<Configuration>& list) {
   };
   part.read({{"position", zoom.name}, {"variable_gaps", gaps}});
   std::ranges::sort(zoom.changes, {}, &SurfaceChange::surface);
-}
-
-void read_document(const Part& part, Prescription& lens) {
-  const auto format = [](const Part& text) {
-    if (text.text() != format_name) text.refuse(in_quotes(format_name));
-  };
-  const auto source = [&](const Part& object) {
-    object.read({{"design", lens.source_design}, {"numbers", lens.source_numbers}});
-  };
-  const auto positions = [&](auto read) {
-    return [&lens, read](const Part& value) {
-      if (!lens.configurations.empty()) value.fail(R"("zoom" and "configurations" are given; must be one of the two)");
-      read(value);
-    };
-  };
-  if (part.json().is_object() && !part.json().contains("format")) {
-    part.fail("key \"format\" is missing; must be " + in_quotes(format_name));
-  }
-  part.read({{"format", format},
-             {"id", lens.id},
-             {"name", lens.name},
-             {"source", source},
-             {"focal_length_mm", lens.focal_length_mm},
-             {"f_number", lens.f_number},
-             {"half_field_deg", lens.half_field_deg},
-             {"image_diagonal_mm", lens.image_diagonal_mm},
-             {"reference_wavelength_nm", lens.reference_wavelength_nm},
-             {"semi_diameters", lens.semi_diameters},
-             {"stop_size", lens.stop_size},
-             {"image_distance", lens.image_distance},
-             {"glass_names", lens.glass_names},
-             {"zoom", positions([&](const Part& object) { read_zoom(object, lens.configurations); })},
-             {"notes", lens.notes},
-             {"aliases", texts(lens.aliases)},
-             {"imported", object_of(lens.imported, read_origin)},
-             {"design", [&](const Part& object) { read_design(object, lens.design); }},
-             {"object_space", [&](const Part& object) { read_medium(object, lens.object_space); }},
-             {"surfaces", list_of(lens.surfaces, read_surface), required},
-             {"configurations", positions(list_of(lens.configurations, read_configuration))}});
-}
-
-/// The words of a path: "surface 1: aspheric 0: order" for "surfaces[1].aspheric[0].order".
-std::string words_of(std::string_view path) {
-  std::string words;
-  while (!path.empty()) {
-    const std::size_t end = std::min(path.find('.'), path.size()), bracket = path.substr(0, end).find('[');
-    std::string_view list = path.substr(0, std::min(bracket, end));
-    words += words.empty() ? "" : ": ";
-    if (bracket != std::string_view::npos) {
-      list.remove_suffix(list.ends_with("ases") ? 2 : list.ends_with('s') ? 1 : 0);
-      words.append(list).append(1, ' ').append(path.substr(bracket + 1, end - bracket - 2));
-    } else {
-      words += list;
-    }
-    path.remove_prefix(std::min(end + 1, path.size()));
-  }
-  return words;
 }
 
 /// The path in the document named by a message of validate(): "surfaces[1].nd" for "surface 1: nd = 9".
@@ -294,19 +179,94 @@ std::string path_of(std::string_view message) {
   return path;
 }
 
+/// Keys whose members or entries stand in lines of their own.
+constexpr std::array<std::string_view, 17> keys_in_lines{
+    "source",   "imported", "design",  "surfaces",     "aliases",        "notes",
+    "warnings", "fields",   "changes", "wavelengths",  "configurations", "prescription",
+    "glasses",  "lens",     "film",    "focal_points", "camera"};
+
+/// Appends a value. depth: of its lines, for their indentation.
+void append(std::string& text, const OrderedJson& json, bool in_lines, std::size_t depth) {
+  if (json.is_number_float()) return void(text += json_number(json.get<double>()));
+  if (json.is_string()) return void(text += json_text(json.get<std::string>()));
+  if (!json.is_structured() || json.empty()) return void(text += json.dump());
+  const std::string margin = in_lines ? "\n" + std::string(2 * depth + 2, ' ') : "";
+  text += json.is_object() ? '{' : '[';
+  std::size_t entries = 0;
+  for (const auto& [key, value] : json.items()) {
+    text += (entries++ == 0 ? "" : in_lines ? "," : ", ") + margin;
+    if (json.is_object()) text += '"' + key + "\": ";
+    const bool lines = json.is_object() && std::ranges::find(keys_in_lines, key) != keys_in_lines.end();
+    append(text, value, lines, depth + (in_lines ? 1 : 0));
+  }
+  if (in_lines) text += "\n" + std::string(2 * depth, ' ');
+  text += json.is_object() ? '}' : ']';
+}
+
 }  // namespace
+
+std::string format_json(const OrderedJson& json) {
+  std::string text;
+  append(text, json, true, 0);
+  return text + '\n';
+}
+
+OrderedJson json_of(const Coating& coating) {
+  if (coating == Coating{}) return "none";
+  OrderedJson json = OrderedJson::object();
+  members(coating, MemberWriter{json});
+  return json;
+}
+
+void read_value(const JsonPart& part, Coating& coating, const Range&) {
+  const std::string word = part.json().is_string() ? part.text() : "";
+  coating = word == "mgf2" ? Coating::quarter_wave() : Coating();
+  if (word == "none" || word == "mgf2") return;
+  if (!part.json().is_structured()) part.refuse(R"("none", "mgf2" or an object)");
+  std::vector<JsonField> fields;
+  members(coating, MemberReader{fields});
+  part.read(fields);
+  if (coating == Coating{}) {
+    part.fail(R"(must have entries in "layers" or "reflectance"; an uncoated surface is "none")");
+  }
+}
+
+OrderedJson json_of(const Prescription& lens) {
+  validate(lens, lens.name.empty() ? std::string("lens") : lens.name);
+  OrderedJson json{{"format", lens_format}};
+  members(lens, MemberWriter{json});
+  return json;
+}
+
+void read_value(const JsonPart& part, Prescription& lens, const Range&) {
+  const auto format = [](const JsonPart& text) {
+    if (text.text() != lens_format) text.refuse(in_quotes(lens_format));
+  };
+  if (part.json().is_object() && !part.json().contains("format")) {
+    part.fail("key \"format\" is missing; must be " + in_quotes(lens_format));
+  }
+  if (part.json().is_object() && part.json().contains("zoom") && part.json().contains("configurations")) {
+    part.fail_at("configurations", R"("zoom" and "configurations" are given; must be one of the two)");
+  }
+  std::vector<JsonField> fields{{"format", format}};
+  members(lens, MemberReader{fields});
+  fields.emplace_back("zoom", [&](const JsonPart& zoom) { read_zoom(zoom, lens.configurations); });
+  part.read(fields);
+  const std::string where = "lens";
+  try {
+    validate(lens, where);
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (!message.starts_with(where + ": ")) throw;
+    part.fail_at(path_of(std::string_view(message).substr(where.size() + 2)), message.substr(where.size() + 2));
+  }
+}
+
+}  // namespace io_detail
 
 Prescription parse_prescription(std::string_view json, const std::string& where) {
   Prescription prescription;
-  read_document(Part(io_detail::JsonTree(json, where, words_of)), prescription);
-  try {
-    validate(prescription, where);
-  } catch (const Error& error) {
-    std::string_view message = error.what();
-    if (!message.starts_with(where + ": ")) throw;
-    message.remove_prefix(where.size() + 2);
-    throw Error(where + io_detail::json_position(json, path_of(message)) + ": " + std::string(message));
-  }
+  io_detail::read_value(io_detail::JsonPart(io_detail::JsonTree(json, where, io_detail::words_of)), prescription);
   return prescription;
 }
 
@@ -318,6 +278,14 @@ Prescription read_prescription(const std::filesystem::path& file) {
                 ": is not JSON; must be a lens file of petzval (read_lens() reads files of other programs)");
   }
   return with_apertures(parse_prescription(text, file.string()));
+}
+
+std::string format_prescription(const Prescription& prescription) {
+  return io_detail::format_json(io_detail::json_of(prescription));
+}
+
+void write_prescription(const Prescription& prescription, const std::filesystem::path& file) {
+  write_file(format_prescription(prescription), file);
 }
 
 }  // namespace petzval

@@ -8,6 +8,7 @@
 
 #include "petzval/core/config.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval {
@@ -55,6 +56,15 @@ PETZVAL_API Prescription read_lens(const std::filesystem::path& file, const Read
 
 /// Reads a lens from memory, like read_lens(). `where` is the name of the source in messages.
 PETZVAL_API Prescription parse_lens(std::string bytes, const std::string& where, const ReadOptions& options = {});
+
+/// Reads the lens of a source with all its configurations, or copies its prescription. `glasses` is as in ReadOptions.
+PETZVAL_API Prescription read_lens(const LensSource& source, const GlassCatalogue* glasses = nullptr);
+/// The configuration that a source names; nullopt: no name, the first. lens: of read_lens().
+PETZVAL_API std::optional<ConfigurationChoice> configuration_of(const LensSource& source, const Prescription& lens);
+/// Reads and compiles the lens of a set-up. glasses: used instead of its own; nullptr: its own.
+PETZVAL_API Lens compile(const CameraSetup& setup, const GlassCatalogue* glasses = nullptr);
+/// Reads and compiles the lens of a set-up, and makes its camera.
+PETZVAL_API Camera camera(const CameraSetup& setup);
 
 /// A lens in the format of another program, with the data that the format cannot express.
 struct ExportedLens {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/match_glasses.hpp"
+#include "petzval/io/lint.hpp"
 
 #include <algorithm>
 #include <cmath>

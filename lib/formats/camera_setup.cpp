@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/camera_setup.hpp"
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "petzval/io/lint.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+
+namespace petzval {
+namespace {
+
+/// The glasses of a source; nullopt: the tables.
+std::optional<GlassCatalogue> glasses_of(const LensSource& source) {
+  if (!source.glasses.empty()) return GlassCatalogue(source.glasses);
+  std::optional<GlassCatalogue> result;
+  for (const std::string& file : source.glass_files) {
+    result = with_glasses(result ? *result : glass_tables(), read_glasses(file).glasses);
+  }
+  return result;
+}
+
+}  // namespace
+
+Prescription read_lens(const LensSource& source, const GlassCatalogue* glasses) {
+  if (source.prescription) return *source.prescription;
+  const std::string entry = source.configuration.substr(0, source.configuration.find('/'));
+  return read_lens(find_lens(source.file).value_or(source.file), {.glasses = glasses, .entry = entry});
+}
+
+std::optional<ConfigurationChoice> configuration_of(const LensSource& source, const Prescription& lens) {
+  std::string position = source.configuration;
+  if (!source.prescription && lens.imported && !lens.imported->entry.empty()) {
+    const std::size_t slash = position.find('/');
+    position = slash == std::string::npos ? "" : position.substr(slash + 1);
+  }
+  if (position.empty()) return {};
+  double number = 0;
+  const char* const end = position.data() + position.size();
+  const auto read = std::from_chars(position.data(), end, number);
+  return read.ec == std::errc() && read.ptr == end ? ConfigurationChoice(number) : ConfigurationChoice(position);
+}
+
+Lens compile(const CameraSetup& setup, const GlassCatalogue* glasses) {
+  const LensSource& source = setup.lens;
+  const auto own = glasses ? std::nullopt : glasses_of(source);
+  if (own) glasses = &*own;
+  const bool thin = source.thin_mm > 0;
+  Prescription lens = thin ? thin_elements(source.thin_mm, setup.f_number.value_or(0)) : read_lens(source, glasses);
+  lens = configured(lens, configuration_of(source, lens).value_or(ConfigurationChoice()));
+  if (source.match_glasses) lens = match_glasses(lens, glasses ? *glasses : glass_tables()).prescription;
+  std::vector<double> nm = source.wavelengths_nm;
+  if (nm.empty()) nm = {lens.reference_wavelength_nm};
+  return compile(lens, nm,
+                 {.glasses = glasses,
+                  .missing_glass = source.require_glasses ? MissingGlass::error : MissingGlass::abbe,
+                  .clamp_wavelengths = source.clamp_wavelengths,
+                  .primary_nm = source.primary_nm});
+}
+
+Camera camera(const CameraSetup& setup) { return camera(setup, prepared(setup, compile(setup))); }
+
+}  // namespace petzval
