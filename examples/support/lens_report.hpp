@@ -78,6 +78,10 @@ petzval::ParaxialField largest_field(const ReportSubject& subject, const petzval
 /// @throws petzval::Error under the conditions of petzval::wavefront()
 std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r, const petzval::Lens& colours);
 
+/// The aberrations of a report. A quantity that fails is null, and `failures` holds the reason under its key. colours:
+/// as in to_json().
+Json exact_aberrations(const Report& report, const petzval::Lens& colours);
+
 /// colours: the lens of the report at all wavelengths of its light, for the chromatic sums.
 Json to_json(const Report& report, const petzval::Lens& colours);
 /// Seidel sums for the largest field of the report, with colour from the shortest to the longest wavelength; nullopt if

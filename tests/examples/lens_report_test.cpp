@@ -161,6 +161,11 @@ TEST_F(LensReport, WindowHasNoFocalLengthAndFindingsAreNoFailure) {
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["afocal"], true);
   EXPECT_TRUE(json["effective_focal_length_mm"].is_null());
+  for (const char* key : {"ray_fans", "field_curvature", "distortion_percent", "mtf", "mtf_over_field", "through_focus",
+                          "encircled_energy", "longitudinal_aberration", "lateral_colour", "wavefront"}) {
+    EXPECT_EQ(json.at(key).is_null(), json["failures"].contains(key)) << key;
+  }
+  EXPECT_FALSE(json["failures"].empty());
   EXPECT_EQ(json["stop_inferred"], true);
   petzval::testing::expect_tokens(outcome.err, {"stop", "surface"});
   ASSERT_FALSE(json["lint"].empty());
