@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "files.hpp"
-#include "petzval/io/lint.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/formats/lens_file.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "suggest.hpp"

@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "petzval/io/lint.hpp"
 #include "petzval/formats/lens_file.hpp"
+#include "petzval/io/lint.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {

@@ -58,7 +58,8 @@ PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wav
 /// @param prescription  the prescription
 /// @param options       glasses and the policy of indices; n_d and V_d replace missing glasses. The wavelength is the
 ///                      primary one of the design, or else the reference wavelength
-/// @return              the prescription; `semi_diameter_computed` is true in rows with a computed aperture. No aperture
+/// @return              the prescription; `semi_diameter_computed` is true in rows with a computed aperture. No
+/// aperture
 ///                      is computed if a medium has no index at these wavelengths
 /// @throws Error        if the prescription is invalid
 PETZVAL_API Prescription with_apertures(const Prescription& prescription, const CompileOptions& options = {});
