@@ -71,9 +71,8 @@ PETZVAL_API std::string_view name(Normalisation normalisation) noexcept;
 
 /// A compiled lens with the coating, the iris, the f-number and the focus of a set-up, and the camera with this lens.
 ///
-/// @throws Error as with_coating(), with_iris(), with_f_number(), with_focus(), FocalSurface and Camera; if the iris
-/// map
-///               is not read
+/// @throws Error as with_coating(), with_iris(), with_f_number(), with_focus(), FocalSurface and Camera; if an iris
+///               map is not read
 PETZVAL_API Lens prepared(const CameraSetup& setup, const Lens& compiled);
 PETZVAL_API Camera camera(const CameraSetup& setup, const Lens& prepared_lens);
 
