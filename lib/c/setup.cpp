@@ -42,7 +42,9 @@ std::string write_camera(const CameraContents& own) {
       if (change.medium) add(*change.medium);
     }
   }
-  return format_json({{"setup", setup_json(setup)}, {"host", json_of(own.host)}});
+  OrderedJson json = OrderedJson::object();
+  json.add("setup", setup_json(setup)), json.add("host", json_of(own.host));
+  return format_json(json);
 }
 
 std::unique_ptr<CameraContents> read_camera(std::string_view bytes) {

@@ -126,7 +126,8 @@ OrderedJson setup_json(const CameraSetup& setup) {
   if (!setup.camera.bokeh.weight_map.empty() && setup.iris_map.empty()) {
     throw Error("camera.bokeh.weight_map has values; must be the picture file iris_map");
   }
-  OrderedJson json{{"format", setup_format}};
+  OrderedJson json = OrderedJson::object();
+  json.add("format", OrderedJson(std::string(setup_format)));
   members(setup, MemberWriter{json});
   return json;
 }

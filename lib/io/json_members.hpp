@@ -7,10 +7,10 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "io/json.hpp"
@@ -22,8 +22,50 @@ struct CameraSetup;
 
 namespace io_detail {
 
-/// JSON whose keys keep the order of the members.
-using OrderedJson = nlohmann::ordered_json;
+/// JSON for writing: null, a number or text, or an object or list whose entries keep their order. The destructor of a
+/// document of nlohmann_json allocates memory, and terminates the program if memory runs out; this one does not.
+class OrderedJson {
+ public:
+  enum class Kind : std::uint8_t { value, object, list };
+
+  OrderedJson() = default;
+  template <class T>
+    requires std::is_arithmetic_v<T>
+  explicit OrderedJson(T value) {
+    if constexpr (std::same_as<T, bool>) {
+      text_ = value ? "true" : "false";
+    } else if constexpr (std::integral<T>) {
+      text_ = std::to_string(value);
+    } else {
+      text_ = json_number(value);
+    }
+  }
+  explicit OrderedJson(const std::string& text) : text_(json_text(text)) {}
+  static OrderedJson object() { return OrderedJson(Kind::object); }
+  static OrderedJson list() { return OrderedJson(Kind::list); }
+
+  Kind kind() const noexcept { return kind_; }
+  bool is_null() const noexcept { return text_ == "null"; }
+  const std::string& text() const noexcept { return text_; }  ///< of a value; of an object or list without entries
+  const std::vector<std::string>& keys() const noexcept { return keys_; }  ///< of the entries of an object
+  const std::vector<OrderedJson>& entries() const noexcept { return entries_; }
+
+  /// Adds an entry to an object; its key must be new.
+  OrderedJson& add(std::string_view key, OrderedJson entry) {
+    keys_.emplace_back(key);
+    return add(std::move(entry));
+  }
+  /// Adds an entry to a list.
+  OrderedJson& add(OrderedJson entry) { return entries_.emplace_back(std::move(entry)); }
+
+ private:
+  explicit OrderedJson(Kind kind) : kind_(kind), text_(kind == Kind::object ? "{}" : "[]") {}
+
+  Kind kind_ = Kind::value;
+  std::string text_ = "null";
+  std::vector<std::string> keys_;
+  std::vector<OrderedJson> entries_;
+};
 
 /// A type, also if it is const: one list of members serves writing and reading.
 template <class S, class T>
@@ -84,20 +126,20 @@ struct MemberWriter {
       OrderedJson json = member ? json_of(*member) : OrderedJson();
       bool null_is_value = presence == Presence::or_null;
       if constexpr (requires { rule.most; }) null_is_value |= member && std::isinf(rule.most);
-      if (!json.is_null() || null_is_value) to[key] = std::move(json);
+      if (!json.is_null() || null_is_value) to.add(key, std::move(json));
     } else {
-      to[key] = json_of(member);
+      to.add(key, json_of(member));
     }
   }
   /// A member that is left out if it has its default value.
   template <class T, class Rule = Range>
   void unless_default(const char* key, const T& member, const Rule& = {}) const {
-    if (!(member == T{})) to[key] = json_of(member);
+    if (!(member == T{})) to.add(key, json_of(member));
   }
   /// Members that are an object of their own in JSON.
   template <class List>
   void object(const char* key, const List& list) const {
-    list(MemberWriter{to[key] = OrderedJson::object()});
+    list(MemberWriter{to.add(key, OrderedJson::object())});
   }
 };
 
@@ -133,19 +175,19 @@ OrderedJson json_of(const T& value) {
   if constexpr (std::floating_point<T>) {
     return std::isfinite(value) ? OrderedJson(value) : OrderedJson();
   } else if constexpr (std::integral<T> || std::same_as<T, std::string>) {
-    return value;
+    return OrderedJson(value);
   } else if constexpr (requires { value.begin(); }) {
-    OrderedJson list = OrderedJson::array();
-    for (const auto& entry : value) list.push_back(json_of(entry));
+    OrderedJson list = OrderedJson::list();
+    for (const auto& entry : value) list.add(json_of(entry));
     return list;
   } else if constexpr (requires(const MemberWriter& of) { members(value, of); }) {
     OrderedJson object = OrderedJson::object();
     members(value, MemberWriter{object});
     return object;
   } else if constexpr (requires { name(value); } || std::same_as<T, Section>) {
-    return word_of(value);
+    return OrderedJson(word_of(value));
   } else {
-    return static_cast<int>(value);
+    return OrderedJson(static_cast<int>(value));
   }
 }
 

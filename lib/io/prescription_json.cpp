@@ -187,20 +187,19 @@ constexpr std::array<std::string_view, 17> keys_in_lines{
 
 /// Appends a value. depth: of its lines, for their indentation.
 void append(std::string& text, const OrderedJson& json, bool in_lines, std::size_t depth) {
-  if (json.is_number_float()) return void(text += json_number(json.get<double>()));
-  if (json.is_string()) return void(text += json_text(json.get<std::string>()));
-  if (!json.is_structured() || json.empty()) return void(text += json.dump());
+  const std::vector<OrderedJson>& entries = json.entries();
+  if (entries.empty()) return void(text += json.text());
+  const bool object = json.kind() == OrderedJson::Kind::object;
   const std::string margin = in_lines ? "\n" + std::string(2 * depth + 2, ' ') : "";
-  text += json.is_object() ? '{' : '[';
-  std::size_t entries = 0;
-  for (const auto& [key, value] : json.items()) {
-    text += (entries++ == 0 ? "" : in_lines ? "," : ", ") + margin;
-    if (json.is_object()) text += '"' + key + "\": ";
-    const bool lines = json.is_object() && std::ranges::find(keys_in_lines, key) != keys_in_lines.end();
-    append(text, value, lines, depth + (in_lines ? 1 : 0));
+  text += object ? '{' : '[';
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    text += (i == 0 ? "" : in_lines ? "," : ", ") + margin;
+    if (object) text += '"' + json.keys()[i] + "\": ";
+    const bool lines = object && std::ranges::find(keys_in_lines, json.keys()[i]) != keys_in_lines.end();
+    append(text, entries[i], lines, depth + (in_lines ? 1 : 0));
   }
   if (in_lines) text += "\n" + std::string(2 * depth, ' ');
-  text += json.is_object() ? '}' : ']';
+  text += object ? '}' : ']';
 }
 
 }  // namespace
@@ -212,7 +211,7 @@ std::string format_json(const OrderedJson& json) {
 }
 
 OrderedJson json_of(const Coating& coating) {
-  if (coating == Coating{}) return "none";
+  if (coating == Coating{}) return OrderedJson("none");
   OrderedJson json = OrderedJson::object();
   members(coating, MemberWriter{json});
   return json;
@@ -233,7 +232,8 @@ void read_value(const JsonPart& part, Coating& coating, const Range&) {
 
 OrderedJson json_of(const Prescription& lens) {
   validate(lens, lens.name.empty() ? std::string("lens") : lens.name);
-  OrderedJson json{{"format", lens_format}};
+  OrderedJson json = OrderedJson::object();
+  json.add("format", OrderedJson(std::string(lens_format)));
   members(lens, MemberWriter{json});
   return json;
 }
