@@ -77,9 +77,10 @@ struct Range {
   const char* words = "a number";
 };
 inline constexpr Range any_number{};
-inline constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
+inline constexpr Range positive{std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(),
                                 "a number above 0"};
-inline constexpr Range positive_or_infinite{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
+inline constexpr Range positive_or_infinite{std::numeric_limits<double>::denorm_min(),
+                                            std::numeric_limits<double>::infinity(),
                                             "a number above 0, or null for infinity"};
 inline constexpr Range not_negative{0, std::numeric_limits<double>::max(), "a number of 0 or more"};
 
