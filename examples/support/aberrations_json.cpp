@@ -168,7 +168,7 @@ class ExactAberrations {
  private:
   static Json um(std::optional<double> mm) { return mm ? Json(1000 * *mm) : Json(); }
   std::size_t wavelengths() const { return r_.subject.light.wavelengths_nm.size(); }
-  /// Computed by the first quantity that needs them.
+  /// The spots of the report, computed at the first call.
   const std::vector<petzval::Spot>& spots() {
     if (!spots_) spots_ = report_spots(r_, colours_);
     return *spots_;

@@ -169,7 +169,7 @@ struct LensContents {
   Lens base, lens;                                ///< without and with the settings of iris, f-number and focus
 };
 
-/// Options of a camera of the C interface that a CameraSetup does not have.
+/// The options of a camera of the C interface beyond its CameraSetup.
 struct HostOptions {
   std::int32_t frame = 0;
   DistanceOrigin origin = DistanceOrigin::front_vertex, near_far_origin = DistanceOrigin::front_vertex;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "handles.hpp"
 #include "io/json_members.hpp"
@@ -34,12 +35,13 @@ std::string write_camera(const CameraContents& own) {
     };
     if (glass && std::ranges::none_of(setup.lens.glasses, same)) setup.lens.glasses.push_back(*glass);
   };
-  const Prescription lens = setup.lens.prescription.value_or(Prescription());
-  add(lens.object_space);
-  for (const SurfaceRow& row : lens.surfaces) add(row.medium);
-  for (const Configuration& configuration : lens.configurations) {
-    for (const SurfaceChange& change : configuration.changes) {
-      if (change.medium) add(*change.medium);
+  if (const std::optional<Prescription>& lens = setup.lens.prescription) {
+    add(lens->object_space);
+    for (const SurfaceRow& row : lens->surfaces) add(row.medium);
+    for (const Configuration& configuration : lens->configurations) {
+      for (const SurfaceChange& change : configuration.changes) {
+        if (change.medium) add(*change.medium);
+      }
     }
   }
   OrderedJson json = OrderedJson::object();

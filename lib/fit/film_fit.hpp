@@ -9,7 +9,7 @@
 #include "petzval/fit/tilt_fit.hpp"
 #include "tilt_problem.hpp"
 
-/// fit_tilt() without Ceres. The component fit adds the weights of robust fits; the C interface has none.
+/// fit_tilt() without Ceres, for the component fit, which adds the weights of robust fits, and for the C interface.
 namespace petzval::fit_detail {
 
 /// The fraction of its weight, 0 to 1, that each target of problem.used keeps.

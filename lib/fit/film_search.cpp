@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gauss-Newton steps over the three parameters of a film, damped like those of Levenberg and Marquardt where they do
-// not reduce the errors, and restricted to the films within the slope limit.
+// Gauss-Newton steps over the three parameters of a film, within the slope limit. A step that does not reduce the
+// errors is damped, as by Levenberg and Marquardt.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The normal equations of the errors at a film; rows of parameters that are not fitted are those of the identity.
+/// The normal equations of the errors at a film. Parameters that are not fitted have the rows of an identity matrix.
 struct NormalEquations {
   Matrix3d products = Matrix3d::Identity();
   Vector3d gradient = Vector3d::Zero();

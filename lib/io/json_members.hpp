@@ -22,8 +22,8 @@ struct CameraSetup;
 
 namespace io_detail {
 
-/// JSON for writing: null, a number or text, or an object or list whose entries keep their order. The destructor of a
-/// document of nlohmann_json allocates memory, and terminates the program if memory runs out; this one does not.
+/// JSON for writing: null, a number or text, or an object or list whose entries keep their order. The destructor
+/// allocates no memory. A document of nlohmann_json allocates some, and terminates the program if memory runs out.
 class OrderedJson {
  public:
   enum class Kind : std::uint8_t { value, object, list };

@@ -175,7 +175,7 @@ std::optional<Lens> at_one_wavelength(const Prescription& rows, std::size_t conf
   for (const double nm : wavelengths) {
     try {
       return lens_detail::compile_as_given(rows, std::array{nm}, options);
-    } catch (const Error&) {  // of a valid prescription: an index is missing
+    } catch (const Error&) {  // The prescription is valid; an index is missing.
     }
   }
   return {};
