@@ -19,12 +19,13 @@ namespace {
 /// The names of the positions 0 to PZ_HEAD - 1, as in petzval_camera.h (tests/hosts/camera_table_test.py compares
 /// them).
 constexpr std::string_view positions =
-    "format size rays wavelength_count primary wavelengths shortest longest t_scale t_offset "
-    "number_count numbers powers film_z pupil_z film_x film_y film_width film_height margin columns rows "
-    "front_z front_curvature front_first surface_count surfaces mirrors edges blades iris_area iris "
-    "pupil_dimensions reach pupil_rows pupil_columns rows_per_mm half_widths film_nodes film_node_size stops "
-    "stop_size terms degree domain_film domain_shift_x domain_radius_x domain_shift_y domain_radius_y "
-    "reference_z scene_dimensions centre_z steepest front_half scene_nodes scene_node_size widest balls";
+    "format size rays wavelength_count primary wavelengths shortest longest t_scale t_offset numbers powers "
+    "film_z pupil_z film_x film_y film_width film_height margin columns rows front_z front_curvature front_first "
+    "surface_count surfaces mirrors edges blades iris_area iris reach rows_per_mm half_widths "
+    "film_nodes film_node_size film_polygon_size film_cells_1 film_cells_2 film_cells_3 "
+    "terms degree domain_film domain_shift_x domain_radius_x domain_shift_y domain_radius_y reference_z "
+    "centre_z steepest front_half widest balls "
+    "scene_nodes scene_node_size scene_polygon_size scene_cells_1 scene_cells_2 scene_cells_3";
 
 /// A float with nine digits, which is read back as the same float.
 std::string text_of(float value) {

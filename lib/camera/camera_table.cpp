@@ -17,6 +17,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/petzval_camera.h"
+#include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
 
 namespace petzval {
@@ -42,6 +43,17 @@ class Numbers {
   void add_all(const Values& values) {
     for (const auto value : values) add(double{value});
   }
+  /// A grid of pupils: pz_cell_at().
+  /// @param cells along each axis; 0: there is no such axis
+  /// @param stops numbers of the stop at each node; may be empty
+  void add_grid(std::size_t at, const std::array<std::size_t, 3>& cells, std::span<const float> nodes,
+                std::size_t node_size, std::span<const float> stops = {}, std::size_t stop_size = 0) {
+    begin(at), set(at + 1, node_size + stop_size), set(at + 2, node_size);
+    for (std::size_t axis = 0; axis < 3; ++axis) set(at + 3 + axis, cells[axis]);
+    for (std::size_t node = 0; node < nodes.size() / node_size; ++node) {
+      add_all(nodes.subspan(node * node_size, node_size)), add_all(stops.subspan(node * stop_size, stop_size));
+    }
+  }
 };
 
 /// Numbers by wavelength (pz_number()): for compiled wavelengths, and as polynomials for the others.
@@ -51,7 +63,6 @@ void put_wavelengths(Numbers& to, const CameraAccess::Data& data) {
   to.set(PZ_WAVELENGTH_COUNT, wavelengths);
   to.set(PZ_PRIMARY, lens.primary_wavelength());
   to.begin(PZ_WAVELENGTHS), to.add_all(lens.wavelengths_nm());
-  to.set(PZ_NUMBER_COUNT, 4 + 2 * count + 1);
   const auto facts_at = [&](Wavelength wavelength) {
     const auto facts = data.scene().facts_at(wavelength);
     return std::array{data.wavelengths.scale(wavelength), facts.we, facts.density, facts.entrance_area};
@@ -100,10 +111,13 @@ void put_surfaces(Numbers& to, const Lens& lens) {
     if (view.surfaces[i].asphere < 0) continue;
     const auto& asphere = view.aspheres[view.surfaces[i].asphere];
     to.begin(first + PZ_SURFACE_SIZE * i + 10);
-    const auto even = static_cast<std::size_t>(asphere.even_count), odd = static_cast<std::size_t>(asphere.odd_count);
-    to.add_all(std::array{double{asphere.height}, double{asphere.rim2}, static_cast<double>(even)});
-    to.add(static_cast<double>(odd));
-    to.add_all(std::span(asphere.even).first(even)), to.add_all(std::span(asphere.odd).first(odd));
+    // Terms of rho^k for k = 2, 2 + step, ...
+    const bool odd = asphere.odd_count > 0;
+    const int terms = odd ? std::max(2 * asphere.even_count - 1, 2 * asphere.odd_count) : asphere.even_count;
+    to.add(asphere.height), to.add(asphere.rim2), to.add(terms), to.add(odd ? 1 : 2);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(terms); ++k) {
+      to.add(!odd ? asphere.even[k] : k % 2 == 1 ? asphere.odd[k / 2] : asphere.even[k / 2]);
+    }
   }
   to.begin(PZ_EDGES);
   const auto iris = kernel::view<double>(lens).iris;
@@ -116,10 +130,10 @@ void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {
   to.set(PZ_RAYS, 1);
   to.set(PZ_REFERENCE_Z, domain.reference_z);
   to.set(PZ_DEGREE, polynomial.degree());
-  to.set(PZ_DOMAIN_FILM, domain.film_radius);
+  to.set(PZ_DOMAIN, domain.film_radius);
   const auto along_x = domain.along_x.value_or(RayPolynomial::Domain::Section{domain.pupil_shift, domain.pupil_radius});
-  to.set(PZ_DOMAIN_SHIFT_X, along_x.pupil_shift), to.set(PZ_DOMAIN_RADIUS_X, along_x.pupil_radius);
-  to.set(PZ_DOMAIN_SHIFT_Y, domain.pupil_shift), to.set(PZ_DOMAIN_RADIUS_Y, domain.pupil_radius);
+  to.set(PZ_DOMAIN + 1, along_x.pupil_shift), to.set(PZ_DOMAIN + 2, along_x.pupil_radius);
+  to.set(PZ_DOMAIN + 3, domain.pupil_shift), to.set(PZ_DOMAIN + 4, domain.pupil_radius);
   to.begin(PZ_TERMS);
   for (const RayPolynomial::Fit& fit : polynomial.fits()) {
     to.add_all(fit.direction_by_film), to.add_all(fit.direction_by_pupil);
@@ -139,24 +153,24 @@ void put_film(Numbers& to, const CameraAccess::Data& data) {
 }
 
 void put_pupils(Numbers& to, const FilmPupilArrays& pupils) {
-  to.set(PZ_PUPIL_DIMENSIONS, pupils.dimensions);
-  to.set(PZ_REACH, pupils.reach), to.set(PZ_ROWS_PER_MM, pupils.rows_per_mm);
-  to.set(PZ_PUPIL_ROWS, pupils.rows), to.set(PZ_PUPIL_COLUMNS, pupils.columns);
-  to.set(PZ_FILM_NODE_SIZE, pupils.node_size), to.set(PZ_STOP_SIZE, pupils.stop_size);
-  to.set(PZ_IRIS_AREA, pupils.iris_area);
+  to.set(PZ_REACH, pupils.reach), to.set(PZ_ROWS_PER_MM, pupils.rows_per_mm), to.set(PZ_IRIS_AREA, pupils.iris_area);
   to.begin(PZ_HALF_WIDTHS), to.add_all(pupils.half_widths);
-  to.begin(PZ_FILM_NODES), to.add_all(pupils.nodes);
-  to.begin(PZ_STOPS), to.add_all(pupils.stops);
   to.begin(PZ_IRIS), to.add_all(pupils.iris);
+  const bool of_revolution = pupils.dimensions == 1;
+  to.add_grid(PZ_FILM_GRID, {of_revolution ? pupils.rows : pupils.columns, of_revolution ? 0 : pupils.rows, 0},
+              pupils.nodes, pupils.node_size, pupils.stops, pupils.stop_size);
 }
 
 void put_entrance(Numbers& to, const EntrancePupilArrays& entrance) {
-  to.set(PZ_SCENE_DIMENSIONS, entrance.dimensions);
   to.set(PZ_CENTRE_Z, entrance.centre_z), to.set(PZ_STEEPEST, entrance.steepest);
-  to.set(PZ_FRONT_HALF, entrance.front_half), to.set(PZ_SCENE_NODE_SIZE, entrance.node_size);
+  to.set(PZ_FRONT_HALF, entrance.front_half);
   to.begin(PZ_BALLS), to.add_all(entrance.balls);
   to.begin(PZ_WIDEST), to.add_all(entrance.widest);
-  to.begin(PZ_SCENE_NODES), to.add_all(entrance.nodes);
+  const bool of_revolution = entrance.dimensions == 2;
+  constexpr std::size_t distances = pupil_table_detail::SceneChart<1>::distances;
+  const std::size_t fields =
+      of_revolution ? pupil_table_detail::SceneChart<1>::fields : pupil_table_detail::SceneChart<2>::fields;
+  to.add_grid(PZ_SCENE_GRID, {fields, of_revolution ? 0 : fields, distances}, entrance.nodes, entrance.node_size);
 }
 
 }  // namespace

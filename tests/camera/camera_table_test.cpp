@@ -136,6 +136,19 @@ TEST(CameraTable, PolynomialsEqualTheLibrary) {
   }
 }
 
+TEST(CameraTable, OddTermsEqualTheLibrary) {
+  for (const int orders : {1, 2}) {
+    Prescription prescription = testing::data_prescription("double_gauss_100mm_f2.0");
+    auto& terms = prescription.surfaces.front().aspheric;
+    terms = {{3, 2e-7}, {4, 1e-9}};
+    if (orders == 2) terms.push_back({5, -1e-10});
+    const Errors found = errors_of(compile(prescription), ModelKind::exact_float, 1000);
+    EXPECT_GT(found.lit, 400);
+    EXPECT_LE(found.other_fates, 1);
+    EXPECT_LE(found.between, std::max(8.0, 2.4 * found.library));
+  }
+}
+
 TEST(CameraTable, WavelengthsBetweenTheCompiledOnesEqualTheLibrary) {
   const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0});
   const Film film = film_of(lens);

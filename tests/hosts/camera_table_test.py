@@ -34,7 +34,7 @@ class Table:
         """A point of the pupil of a film point, and the area that the sample represents."""
         r = math.hypot(*film)
         place = r * self.t[self.at["rows_per_mm"]]
-        row = min(int(place), self.whole("pupil_rows") - 1)
+        row = min(int(place), self.whole("film_cells_1") - 1)
         t = place - row
         size = self.whole("film_node_size")
         near, far = self.t[self.whole("film_nodes") + row * size:][:2 * size].reshape(2, size)
@@ -51,12 +51,9 @@ class Table:
         c, e, aspheric = surface[2], surface[3], int(surface[10])
         z = c * u / (1 + numpy.sqrt(1 - e * c * c * u))
         if aspheric:
-            height, _, even, odd = self.t[aspheric:aspheric + 4]
-            rho = numpy.sqrt(u) / height
-            for i in range(int(even)):
-                z += self.t[aspheric + 4 + i] * rho ** (2 * i + 2)
-            for i in range(int(odd)):
-                z += self.t[aspheric + 4 + int(even) + i] * rho ** (2 * i + 3)
+            height, _, terms, step = self.t[aspheric:aspheric + 4]
+            for i in range(int(terms)):
+                z += self.t[aspheric + 4 + i] * (numpy.sqrt(u) / height) ** (2 + step * i)
         return z
 
     def ray(self, film, u, v):
@@ -107,7 +104,7 @@ for name in ("double_gauss_100mm_f2.0", "phone_5.6mm_f3.5", "retrofocus_100mm_f2
             named = json.load(file)
         numbers = numpy.fromfile(os.path.join(folder, "t.bin"), "<f4")
     failures += not numpy.array_equal(numbers, numpy.array(named["table"], "f4"))
-    failures += numbers[0] != 6 or numbers[1] != len(numbers)
+    failures += numbers[0] != 7 or numbers[1] != len(numbers)
     defined = {n.lower(): int(p) for n, p in re.findall(r"#define PZ_([A-Z_]+) (\d+)", open(header).read())}
     failures += any(defined.get(n, p) != p for n, p in named["positions"].items() if n != "format")
     table = Table(named["positions"], numbers)
