@@ -311,7 +311,7 @@ class Job {
       chosen_ = {*named, {"--model " + options_.model}};
       return;
     }
-    // The choice depends on measured times, which vary between machines and runs.
+    // Errors near a limit may differ in their last digits between machines.
     if (options_.shard.count > 1) {
       throw petzval::Error("--model auto with --shard " + options_.shard.text() +
                            "; must be a model by name, the same for all shards");

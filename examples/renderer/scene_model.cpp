@@ -159,7 +159,7 @@ ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, con
       if (!best) refused.push_back(std::string(petzval::name(c.model)) + ": bias " + number(bias, 2));
       continue;
     }
-    if (best && !(c.ns_per_ray < 0.9 * best->ns_per_ray)) continue;
+    if (best && !(c.cost < 0.9 * best->cost)) continue;
     best = &c, best_bias = bias;
   }
   ModelForScene result;

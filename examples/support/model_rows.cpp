@@ -33,6 +33,7 @@ void for_numbers(const ModelRow& row, Use use) {
   use("exposure_error", row.exposure_error);
   use("ns_per_ray", row.ns_per_ray);
   use("setup_ms", row.setup_ms);
+  use("cost", row.cost);
 }
 
 }  // namespace
@@ -84,12 +85,12 @@ std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table,
     rows.push_back({candidate.model, 1e3 * rays.rms_mm, 1e3 * rays.p99_mm, max_px * um_per_px, rays.rms_px, max_px,
                     guarded ? candidate.bound_pupil_shape : candidate.error.pupil_shape,
                     guarded ? candidate.bound_exposure : candidate.error.exposure, candidate.ns_per_ray,
-                    candidate.setup_ms});
+                    candidate.setup_ms, candidate.cost});
   }
   for (ModelRow& row : rows) {
     row.on_front = std::ranges::none_of(rows, [&](const ModelRow& other) {
-      return other.ns_per_ray <= row.ns_per_ray && other.max_um <= row.max_um &&
-             (other.ns_per_ray < row.ns_per_ray || other.max_um < row.max_um);
+      return other.cost <= row.cost && other.max_um <= row.max_um &&
+             (other.cost < row.cost || other.max_um < row.max_um);
     });
   }
   return rows;

@@ -35,7 +35,7 @@ std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 struct ModelRow {
   petzval::ModelKind model{};
   double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
-  double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0;
+  double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0, cost = 0;
   bool on_front = false;  ///< no other row is faster and as accurate (max_um), or more accurate and as fast
 };
 /// guarded: gives the bounds that are compared with budgets instead of the largest measured errors.

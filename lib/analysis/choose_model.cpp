@@ -101,11 +101,12 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
     if (!candidate.available) continue;
     judgement = judge(candidate, table.of_tolerance[k][budget_number], budget);
     candidate.inside = judgement.inside;
-    if (candidate.inside && (!chosen || candidate.ns_per_ray < chosen->ns_per_ray)) chosen = &candidate;
+    if (candidate.inside && (!chosen || candidate.cost < chosen->cost)) chosen = &candidate;
   }
   choice.model = chosen->model;
   const auto called = [](const ModelCandidate& candidate) {
-    return std::string(name(candidate.model)) + " (" + to_text(candidate.ns_per_ray, 3) + " ns per ray)";
+    return std::string(name(candidate.model)) + " (cost " + to_text(candidate.cost, 2) + "; " +
+           to_text(candidate.ns_per_ray, 3) + " ns per ray here)";
   };
   const std::string& kept = judgements[static_cast<std::size_t>(chosen - choice.table.data())].kept;
   choice.reasons.push_back(called(*chosen) + " is the fastest inside the budget" + (kept.empty() ? "" : ": " + kept));
@@ -113,7 +114,7 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
     const ModelCandidate& candidate = choice.table[k];
     if (!candidate.available) {
       choice.reasons.push_back(std::string(name(candidate.model)) + " cannot be built: " + candidate.remark);
-    } else if (!candidate.inside && candidate.ns_per_ray < chosen->ns_per_ray) {
+    } else if (!candidate.inside && candidate.cost < chosen->cost) {
       choice.reasons.push_back(called(candidate) + " will not do: " + judgements[k].missed);
     }
   }

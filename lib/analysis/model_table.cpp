@@ -102,23 +102,6 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
                                    [&](std::size_t w) { return std::abs(lens.wavelengths_nm()[w] - d_line_nm); });
 }
 
-/// Costs of models from noisy times. pinhole, thin and thick run the same loops; two discs add the look-up of a table;
-/// polynomials add a sum of terms and take longer with more terms.
-std::vector<double> costs(std::span<const std::shared_ptr<const RayModel>> models, std::vector<double> times) {
-  double discs = std::numeric_limits<double>::infinity(), simpler = 0;
-  const auto one_disc = [](ModelKind kind) { return kind.is_first_order() && kind != ModelKind::thin_two_disc; };
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    if (one_disc(models[k]->kind())) discs = std::min(discs, times[k]);
-  }
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    const ModelKind kind = models[k]->kind();
-    if (!kind.is_first_order() && !kind.is_polynomial()) continue;
-    times[k] = one_disc(kind) ? discs : std::max(times[k], simpler);
-    simpler = std::max(simpler, times[k]);
-  }
-  return times;
-}
-
 }  // namespace
 
 ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
@@ -134,6 +117,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
   for (const ModelKind model : models()) {
     ModelCandidate& candidate = table.models.emplace_back();
     candidate.model = model;
+    candidate.cost = cost(model, setting.lens);
     std::vector<double>& of_tolerance = table.of_tolerance.emplace_back();
     std::shared_ptr<const RayModel> built;
     const auto start = std::chrono::steady_clock::now();
@@ -162,7 +146,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     all.push_back(built);
     if (model == ModelKind::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
   }
-  const std::vector<double> times = costs(all, time_rays(all, film));
+  const std::vector<double> times = time_rays(all, film);
   for (std::size_t k = 0, next = 0; k < table.models.size(); ++k) {
     if (table.models[k].available) table.models[k].ns_per_ray = times[next++];
   }

@@ -104,7 +104,7 @@ TEST_P(Promise, HoldsForOtherSamples) {
         EXPECT_TRUE(inside(1)) << "budget " << k;
       }
       // Samples may miss sharp minima of the blur; then the result is only an upper bound.
-      if (!budget.max_of_blur && candidate.ns_per_ray < candidate_of(choices[k], choices[k].model).ns_per_ray) {
+      if (!budget.max_of_blur && candidate.cost < candidate_of(choices[k], choices[k].model).cost) {
         EXPECT_FALSE(inside(0.9)) << "budget " << k;
       }
     }
@@ -182,7 +182,7 @@ TEST(ChooseModel, ChoosesTheFastestWithinTheBudget) {
   for (const ModelChoice& choice : usual_choices()) {
     for (const ModelCandidate& c : choice.table) {
       if (!c.inside) continue;
-      EXPECT_GE(c.ns_per_ray, candidate_of(choice, choice.model).ns_per_ray) << name(c.model);
+      EXPECT_GE(c.cost, candidate_of(choice, choice.model).cost) << name(c.model);
     }
   }
   EXPECT_TRUE(std::ranges::all_of(usual_choices()[none].table, &ModelCandidate::inside));
@@ -208,7 +208,7 @@ TEST(ChooseModel, GivesReasonsWithNumbers) {
   EXPECT_TRUE(choice.reasons[0].starts_with(name(choice.model))) << choice.reasons[0];
   expect_tokens(choice.reasons[0], {0.25, 1});  // the budget, px and per cent
   for (const ModelCandidate& c : choice.table) {
-    const bool faster = c.ns_per_ray < candidate_of(choice, choice.model).ns_per_ray;
+    const bool faster = c.cost < candidate_of(choice, choice.model).cost;
     const bool named = std::ranges::any_of(choice.reasons, [&](const std::string& r) {
       return r.starts_with(std::string(name(c.model)) + " (") && testing::has_token(r, "not");
     });

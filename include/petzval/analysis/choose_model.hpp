@@ -128,6 +128,9 @@ struct ModelCandidate {
   std::string remark = {};
   ModelError error = {};  ///< measured errors, without the margins of the bounds
   double bound_px = 0, bound_of_blur = 0, bound_exposure = 0, bound_pupil_shape = 0;
+  /// Expected time of a ray, in rays of a thin lens, which ranks the models: by their degree or the surfaces of the
+  /// lens, the same on all machines.
+  double cost = 0;
   double ns_per_ray = 0;  ///< best time of Camera::sample() in batches on one thread of this machine
   double setup_ms = 0;    ///< time to build the model
   bool inside = false;    ///< true if all bounds are within the budget
@@ -148,8 +151,8 @@ struct ModelChoice {
 ///
 /// The lens must be focused; with_f_number() stops it down. Errors are measured at the nearest and farthest depth, at
 /// three depths between them (equally spaced in 1/distance from the film) and at the focus, which is the same for all
-/// models (min_rms). Among equally fast models the first of models() is chosen; pinhole, thin and thick count as
-/// equally fast.
+/// models (min_rms). The model with the least ModelCandidate::cost is chosen; among models of equal cost, such as
+/// pinhole, thin and thick, the first of models().
 ///
 ///     const ModelChoice choice = choose_model(lens, {.near_mm = 1000, .film = film}, {.max_px = 0.25});
 ///     const Camera camera(lens, film, {.model = choice.model});
