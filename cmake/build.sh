@@ -11,6 +11,10 @@ docs_packages="doxygen"  # of the target docs; install them yourself
 # Sources are compiled in groups: a third to a half less work from nothing, more after a change of one source.
 unity=-DCMAKE_UNITY_BUILD=${UNITY:-ON}
 
+# Objects of earlier builds, where ccache is installed.
+cached=
+if command -v ccache >/dev/null; then cached="-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache"; fi
+
 BUILD_DIR=${BUILD_DIR:-$root/build}
 case $BUILD_DIR in
   /*) ;;
@@ -41,7 +45,7 @@ need() {
 # build OPTION...: configures with the CMake options given and builds $target, or all, in $BUILD_DIR.
 build() {
   echo "== Configuring in $BUILD_DIR"
-  cmake -S "$root" -B "$BUILD_DIR" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+  cmake -S "$root" -B "$BUILD_DIR" -G Ninja -DCMAKE_BUILD_TYPE=Release $cached "$@"
   echo "== Building"
   NINJA_STATUS="[%f/%t, %es] " cmake --build "$BUILD_DIR" --target "${target:-all}"
 }
