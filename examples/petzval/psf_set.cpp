@@ -84,7 +84,8 @@ class Scenes {
 
   petzval::PsfKernel kernel(const PsfSetPoint& point, std::uint32_t seed = 0, double half_width_mm = 0) {
     const examples::BokehScene scene = at(point);
-    return petzval::psf_kernel(scene.lens, lens_, scene.light, scene.lens.wavelength(point.wavelength_nm),
+    return petzval::psf_kernel(scene.lens, lens_, scene.light,
+                               scene.lens.wavelength_index(petzval::Wavelength::nm(point.wavelength_nm)),
                                {.samples = options_.samples,
                                 .pixels = static_cast<int>(options_.pixels),
                                 .seed = seed,

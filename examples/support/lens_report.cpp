@@ -157,8 +157,9 @@ std::optional<petzval::SeidelSums> report_seidel(const Report& r, const petzval:
   const auto& nm = r.subject.light.wavelengths_nm;
   const auto [shortest, longest] = std::minmax_element(nm.begin(), nm.end());
   try {
-    return petzval::seidel_sums(colours, largest_field(r.subject, colours), {}, colours.wavelength(*shortest),
-                                colours.wavelength(*longest));
+    return petzval::seidel_sums(colours, largest_field(r.subject, colours), {},
+                                colours.wavelength_index(petzval::Wavelength::nm(*shortest)),
+                                colours.wavelength_index(petzval::Wavelength::nm(*longest)));
   } catch (const petzval::Error&) {
     return {};
   }

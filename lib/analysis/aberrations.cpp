@@ -172,7 +172,7 @@ std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject
                                                 Wavelength wavelength) {
   const auto height = [&](double field) -> std::optional<double> {
     const FieldPoint point{.field_rad = field, .z = subject_z};
-    const auto hit = analysis_detail::chief_point(lens, point, wavelength.position(lens.primary_wavelength()));
+    const auto hit = analysis_detail::chief_point(lens, point, wavelength.index(lens.primary_wavelength()));
     if (!hit) return {};
     return hit->y;
   };

@@ -432,7 +432,7 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
   check(options);
   std::vector<std::size_t> wavelengths;
   if (options.wavelength) {
-    wavelengths.push_back(lens.compiled_position(*options.wavelength));
+    wavelengths.push_back(lens.wavelength_index(*options.wavelength));
   } else {
     for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) wavelengths.push_back(w);
   }

@@ -56,7 +56,8 @@ struct Setting {
         film(scene.film),
         samples{.depths_z = depths_of(lens, scene), .film_points = points_for_rays, .threads = threads},
         exact(lens, film.radius_mm()) {
-    for (const double nm : scene.wavelengths_nm) samples.wavelengths.push_back(lens.wavelength(nm));
+    for (const double nm : scene.wavelengths_nm)
+      samples.wavelengths.push_back(lens.wavelength_index(Wavelength::nm(nm)));
     samples.wavelengths = wavelengths_of(lens, samples);
     const bool blur = std::ranges::any_of(tolerances, [](const Tolerance& t) { return t.of_blur > 0; });
     const double from_z = origin_z(lens, scene.origin);

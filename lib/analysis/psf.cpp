@@ -240,7 +240,7 @@ double brightest(const SendRays& send, std::size_t wavelengths) {
 
 /// Indices of the wavelengths of an image.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& options) {
-  if (options.wavelength) return {lens.compiled_position(*options.wavelength)};
+  if (options.wavelength) return {lens.wavelength_index(*options.wavelength)};
   std::vector<std::size_t> all(lens.wavelengths_nm().size());
   std::iota(all.begin(), all.end(), std::size_t(0));
   return all;

@@ -100,7 +100,7 @@ std::optional<Vec2<double>> analysis_detail::chief_point(const Lens& lens, const
 }
 
 double airy_radius(const Lens& lens, Wavelength wavelength) {
-  const double nm = wavelength.in_nm() ? *wavelength.in_nm() : lens.wavelengths_nm()[lens.position(wavelength)];
+  const double nm = wavelength.in_nm() ? *wavelength.in_nm() : lens.wavelengths_nm()[lens.wavelength_index(wavelength)];
   return 1.22 * nm * 1e-6 / lens.index(lens.surface_count(), wavelength) * film_side_f_number(lens);
 }
 

@@ -112,13 +112,13 @@ std::vector<std::size_t> uncoated_surfaces(const Lens& lens) {
 }
 
 std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength, Travel travel) {
-  return Passage(lens, lens.compiled_position(wavelength), travel)(ray);
+  return Passage(lens, lens.wavelength_index(wavelength), travel)(ray);
 }
 
 std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
   const std::size_t directions = lens.rotationally_symmetric() && point.field_rad == 0 ? 1 : 32;
   const PupilBoundary pupil = pupil_boundary(lens, point, wavelength, directions);
-  Passage passage(lens, lens.compiled_position(wavelength), Travel::to_film);
+  Passage passage(lens, lens.wavelength_index(wavelength), Travel::to_film);
   // The nodes of a symmetric lens are mirrored at the meridian of the field: one half is enough.
   const bool mirrored = lens.rotationally_symmetric() && point.azimuth_rad == 0;
   double light = 0, area = 0;

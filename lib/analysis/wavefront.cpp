@@ -138,7 +138,7 @@ std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, co
     throw Error("wavefront: directions = " + std::to_string(options.directions) +
                 "; must be a multiple of 3, at least 12");
   }
-  const std::size_t wavelength = lens.compiled_position(options.wavelength);
+  const std::size_t wavelength = lens.wavelength_index(options.wavelength);
   const auto errors = analysis_detail::SphereErrors::of(lens, point, wavelength);
   if (!errors) return {};
   std::optional<double> entrance_unit;

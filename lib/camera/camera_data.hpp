@@ -50,7 +50,7 @@ struct Camera::Data {
   const camera_detail::FilmView& view() const noexcept { return view_; }
   /// A wavelength as an index or in nm, clamped if the camera clamps.
   Wavelength resolved(Wavelength given) const noexcept {
-    if (!given.in_nm()) return given.position(primary_);
+    if (!given.in_nm()) return given.index(primary_);
     return clamp_ ? Wavelength::nm(clamped(*given.in_nm())) : given;
   }
   /// Resolves the wavelengths of N rays and calls of_rays(begin, count, wavelengths) for consecutive ranges. One call

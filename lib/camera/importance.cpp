@@ -203,7 +203,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
 
 const SceneSide::Compiled& SceneSide::nearest(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
-  return compiled_[nm ? in_nm_.nearest(*nm) : wavelength.position(primary_)];
+  return compiled_[nm ? in_nm_.nearest(*nm) : wavelength.index(primary_)];
 }
 
 SceneSide::Facts SceneSide::facts_at(Wavelength wavelength) const noexcept {

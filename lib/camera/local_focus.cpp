@@ -176,7 +176,7 @@ struct LocalFocus::Data {
       const auto [middle, radius, dispersion] = between(*nm);
       return at(*maps, middle, radius, dispersion);
     }
-    const std::size_t position = wavelength.position(primary);
+    const std::size_t position = wavelength.index(primary);
     return position < compiled.size() ? std::optional(compiled[position]) : std::nullopt;
   }
 

@@ -60,7 +60,7 @@ const SectionMaps* at_wavelength(Wavelength at, std::size_t primary, const std::
     own = maps_of(between(*nm));
     return &own;
   }
-  const std::size_t position = at.position(primary);
+  const std::size_t position = at.index(primary);
   return position < compiled.size() ? &compiled[position] : nullptr;
 }
 
@@ -272,7 +272,7 @@ void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const double>
 RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
                                 const trace_detail::LensLight*, double*) const noexcept {
   const auto one = camera_loops().map_one;
-  const std::size_t position = wavelength.position(primary_);
+  const std::size_t position = wavelength.index(primary_);
   if (position < to_scene_.size()) return one(&to_scene_[position], z_, reach_, line, ray);
   SectionMaps own;
   return one(map_at(wavelength, own), z_, reach_, line, ray);

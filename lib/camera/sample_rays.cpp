@@ -221,7 +221,7 @@ WavelengthFacts::WavelengthFacts(const RayModel& model, std::vector<double> scal
 
 bool WavelengthFacts::covers(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
-  return nm ? between_scales_.covers(*nm) : wavelength.position(primary_) < count();
+  return nm ? between_scales_.covers(*nm) : wavelength.index(primary_) < count();
 }
 
 double WavelengthFacts::scale_between(Wavelength wavelength) const noexcept {
@@ -232,7 +232,7 @@ double WavelengthFacts::scale_between(Wavelength wavelength) const noexcept {
 double WavelengthFacts::pinhole_shift(Wavelength wavelength) const noexcept {
   if (!covers(wavelength)) return 0;
   const auto nm = wavelength.in_nm();
-  return nm ? between_shifts_(*nm)[0] : shifts_[wavelength.position(primary_)];
+  return nm ? between_shifts_(*nm)[0] : shifts_[wavelength.index(primary_)];
 }
 
 template <class T>

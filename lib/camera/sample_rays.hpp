@@ -33,7 +33,7 @@ class PETZVAL_API WavelengthFacts {
   bool covers(Wavelength wavelength) const noexcept;
   /// Factor of weights: for irradiance the squared index behind the lens; 0 if the wavelength is not covered.
   double scale(Wavelength wavelength) const noexcept {
-    const std::size_t position = wavelength.position(primary_);
+    const std::size_t position = wavelength.index(primary_);
     return position < count() ? scale_[position] : scale_between(wavelength);
   }
   /// The scales, for loops over rays.

@@ -166,10 +166,7 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
 }  // namespace camera_detail
 
 TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength) {
-  const std::size_t w = lens.position(wavelength);
-  if (w >= lens.wavelengths_nm().size()) {
-    throw Error(lens.name() + ": fit_two_discs: the lens does not have this wavelength; must be a compiled one");
-  }
+  const std::size_t w = lens.wavelength_index(wavelength);
   if (!(film_radius > 0 && std::isfinite(film_radius))) {
     throw Error(lens.name() + ": fit_two_discs: film_radius = " + to_text(film_radius) +
                 " mm; must be finite and above 0");

@@ -278,7 +278,8 @@ void OslCamera::set_boxes() {
   // bounds.
   const auto nm = lens_.wavelengths_nm();
   const auto [first, last] = std::ranges::minmax(nm);
-  const std::set<std::size_t> wavelengths{lens_.primary_wavelength(), lens_.wavelength(first), lens_.wavelength(last)};
+  const std::set<std::size_t> wavelengths{lens_.primary_wavelength(), lens_.wavelength_index(Wavelength::nm(first)),
+                                          lens_.wavelength_index(Wavelength::nm(last))};
   std::vector<double> from, to, across;
   for (const double stop_radius : stop_radii_) {
     // Boxes at the rings and halfway between the rings.

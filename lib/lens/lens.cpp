@@ -21,11 +21,16 @@ namespace petzval {
 
 namespace {
 
-/// Position of a wavelength in a list, within 1e-6 nm.
-std::optional<std::size_t> compiled(const std::vector<double>& list, double nm) {
-  const auto found = std::find_if(list.begin(), list.end(), [nm](double w) { return std::abs(w - nm) <= 1e-6; });
-  if (found == list.end()) return {};
+/// Index of a wavelength in a list, within 1e-6 nm; the length of the list if it is not there.
+std::size_t compiled(std::span<const double> list, double nm) noexcept {
+  const auto found = std::ranges::find_if(list, [nm](double w) { return std::abs(w - nm) <= 1e-6; });
   return static_cast<std::size_t>(found - list.begin());
+}
+
+/// Index of a wavelength; the number of wavelengths or more if it was not compiled.
+std::size_t index_of(const Lens& lens, Wavelength at) noexcept {
+  const auto nm = at.in_nm();
+  return nm ? compiled(lens.wavelengths_nm(), *nm) : at.index(lens.primary_wavelength());
 }
 
 std::size_t nearest(const std::vector<double>& list, double nm) {
@@ -42,7 +47,7 @@ void demand(const Lens& lens, const char* what, std::size_t found, std::size_t c
 /// @throws Error unless the lens has the space and covers the wavelength
 void demand_medium(const Lens& lens, std::size_t space, Wavelength at) {
   const auto list = lens.wavelengths_nm();
-  const std::size_t w = lens.position(at);
+  const std::size_t w = index_of(lens, at);
   if (const auto nm = at.in_nm(); !nm) {
     demand(lens, "wavelength", w, list.size());
   } else if (w >= list.size() && !lens.covers(at)) {
@@ -78,32 +83,31 @@ std::span<const std::string> Lens::clamped_glasses() const noexcept { return dat
 
 std::size_t Lens::primary_wavelength() const noexcept { return data_->primary; }
 
-std::size_t Lens::position(Wavelength at) const noexcept {
-  if (const auto nm = at.in_nm()) return compiled(data_->wavelengths_nm, *nm).value_or(at.position(0));
-  return at.position(primary_wavelength());
-}
-
-std::size_t Lens::compiled_position(Wavelength at) const {
-  if (const auto nm = at.in_nm()) return wavelength(*nm);
-  demand(*this, "wavelength", position(at), data_->wavelengths_nm.size());
-  return position(at);
+std::size_t Lens::wavelength_index(Wavelength at) const {
+  const std::size_t w = index_of(*this, at);
+  const auto nm = at.in_nm();
+  if (!nm) demand(*this, "wavelength", w, data_->wavelengths_nm.size());
+  if (w < data_->wavelengths_nm.size()) return w;
+  std::string list;
+  for (const double compiled : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + to_text(compiled);
+  throw Error(name() + ": wavelength = " + to_text(*nm) + " nm; must be a compiled wavelength: " + list);
 }
 
 bool Lens::covers(Wavelength at) const noexcept {
   if (const auto nm = at.in_nm()) return data_->indices.spectrum.covers(*nm);
-  return position(at) < data_->wavelengths_nm.size();
+  return index_of(*this, at) < data_->wavelengths_nm.size();
 }
 
 double Lens::index(std::size_t space, Wavelength at) const {
   demand_medium(*this, space, at);
-  const std::size_t w = position(at);
+  const std::size_t w = index_of(*this, at);
   return w < data_->wavelengths_nm.size() ? data_->indices.values[w * (surface_count() + 1) + space]
                                           : data_->indices.spectrum.index(space, *at.in_nm());
 }
 
 double Lens::absorption(std::size_t space, Wavelength at) const {
   demand_medium(*this, space, at);
-  const double nm = at.in_nm() ? *at.in_nm() : data_->wavelengths_nm[position(at)];
+  const double nm = at.in_nm() ? *at.in_nm() : data_->wavelengths_nm[index_of(*this, at)];
   return glass_detail::absorption_at(data_->indices.absorption[space], nm);
 }
 
@@ -114,13 +118,6 @@ double Lens::light_direction(std::size_t space) const {
   if (space == 0) return 1;
   const kernel::SurfaceTable<double>& before = data_->in_double->tables.surfaces[space - 1];
   return before.mirror ? -before.sense : before.sense;
-}
-
-std::size_t Lens::wavelength(double nm) const {
-  if (const auto found = compiled(data_->wavelengths_nm, nm)) return *found;
-  std::string list;
-  for (const double w : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + to_text(w);
-  throw Error(name() + ": wavelength = " + to_text(nm) + " nm; must be a compiled wavelength: " + list);
 }
 
 std::size_t Lens::nearest_wavelength(double nm) const {
@@ -192,16 +189,18 @@ Lens lens_detail::compile_as_given(const Prescription& source, std::span<const d
   auto data = std::make_shared<Lens::Data>();
   data->name = where;
   for (const double nm : wavelengths_nm) {
-    if (const auto same = compiled(data->wavelengths_nm, nm)) {
+    if (const std::size_t same = compiled(data->wavelengths_nm, nm); same < data->wavelengths_nm.size()) {
       throw Error(where + ": wavelength " + std::to_string(data->wavelengths_nm.size()) + " = " + to_text(nm) +
-                  " nm; must differ from wavelength " + std::to_string(*same) + " of the list");
+                  " nm; must differ from wavelength " + std::to_string(same) + " of the list");
     }
     data->wavelengths_nm.push_back(nm);
   }
-  data->primary = compiled(data->wavelengths_nm, options.primary_nm.value_or(prescription.reference_wavelength_nm))
-                      .value_or(nearest(data->wavelengths_nm, d_line_nm));
-  if (options.primary_nm && !compiled(data->wavelengths_nm, *options.primary_nm)) {
-    throw Error(where + ": primary_nm = " + to_text(*options.primary_nm) + "; must be a compiled wavelength");
+  data->primary = compiled(data->wavelengths_nm, options.primary_nm.value_or(prescription.reference_wavelength_nm));
+  if (data->primary == data->wavelengths_nm.size()) {
+    if (options.primary_nm) {
+      throw Error(where + ": primary_nm = " + to_text(*options.primary_nm) + "; must be a compiled wavelength");
+    }
+    data->primary = nearest(data->wavelengths_nm, d_line_nm);
   }
   for (const SurfaceRow& row : prescription.surfaces) {
     LensSurface s;

@@ -122,7 +122,7 @@ const R* polynomial_detail::WavelengthFits::coefficients(Wavelength wavelength, 
   const std::size_t each = in.coefficients.size() / count_;
   const auto nm = wavelength.in_nm();
   if (!nm) {
-    const std::size_t position = wavelength.position(primary_);
+    const std::size_t position = wavelength.index(primary_);
     return position < count_ ? in.coefficients.data() + position * each : nullptr;
   }
   if (!wavelengths_.covers(*nm)) return nullptr;

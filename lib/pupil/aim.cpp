@@ -250,7 +250,7 @@ std::string_view name(AimStatus status) noexcept {
 
 AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const Vec2<double>& target,
                            Wavelength wavelength) {
-  return Aimer(lens, plane, lens.compiled_position(wavelength))(target);
+  return Aimer(lens, plane, lens.wavelength_index(wavelength))(target);
 }
 
 AimedRay aim(const Lens& lens, const FieldPoint& point, const Vec2<double>& target, Wavelength wavelength) {

@@ -24,7 +24,7 @@ class HeightAt {
  public:
   HeightAt(const Lens& lens, std::size_t surface, Wavelength wavelength)
       : lens_(lens), surface_(surface), along_y_(main_meridian(lens, wavelength) == Meridian::y) {
-    path_.wavelength = lens.compiled_position(wavelength);
+    path_.wavelength = lens.wavelength_index(wavelength);
     path_.apertures = false;
     path_.last = surface + 1;
   }

@@ -365,7 +365,7 @@ PupilBoundary obscured_boundary(const Lens& lens, const PupilBoundary& open, Coo
 
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions,
                           Coordinates coordinates = Coordinates::plane) {
-  const std::size_t wavelength = lens.compiled_position(at);
+  const std::size_t wavelength = lens.wavelength_index(at);
   constexpr std::size_t max_directions = 1 << 20;
   const bool one_is_enough = plane.on_axis() && lens.rotationally_symmetric();
   if ((directions < 3 || directions > max_directions) && !(directions == 1 && one_is_enough)) {

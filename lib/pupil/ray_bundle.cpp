@@ -14,7 +14,7 @@ namespace petzval {
 RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
                        int threads, std::uint32_t first, bool slopes) {
   if (threads < 1) throw Error("trace_bundle: threads = " + std::to_string(threads) + "; must be at least 1");
-  (void)lens.compiled_position(pupil.wavelength());
+  (void)lens.wavelength_index(pupil.wavelength());
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
     std::array<double, pupil_detail::block_rays> buffer_u, buffer_v;
     const std::span u(buffer_u.data(), end - begin), v(buffer_v.data(), end - begin);

@@ -155,7 +155,7 @@ struct EntrancePupilTable::Data {
   /// Index of the pupils for a wavelength; balls.size() or more if the wavelength is not covered.
   std::size_t position(Wavelength at) const noexcept {
     const auto nm = at.in_nm();
-    return nm ? compiled.nearest(*nm) : at.position(primary);
+    return nm ? compiled.nearest(*nm) : at.index(primary);
   }
   /// True if a ray at a wavelength may reach the pupil from a point.
   bool sees(const Vec3<double>& point, std::size_t wavelength) const noexcept {

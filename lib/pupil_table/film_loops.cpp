@@ -89,7 +89,7 @@ void by_bundles(const Grid& grid, std::size_t count, const R* const (&lines)[4],
     return w < static_cast<std::size_t>(grid.wavelengths) ? static_cast<Bit>(w) * nodes : Bit(-1);
   };
   alignas(64) Bit begins[bundle];
-  const Bit shared = begin_of(wavelengths.all.position(static_cast<std::size_t>(grid.primary)));
+  const Bit shared = begin_of(wavelengths.all.index(static_cast<std::size_t>(grid.primary)));
   for (Bit& begin : begins) begin = shared;
   by_bundles(count, lines, to, [&](std::size_t first, std::size_t rays, std::size_t n, const auto& from, auto& out) {
     for (std::size_t i = 0; wavelengths.each && i < rays; ++i) begins[i] = begin_of(wavelengths.each[first + i]);

@@ -138,7 +138,7 @@ struct FilmPupilTable::Data {
   /// Index of the pupils for a wavelength; `wavelengths` if the wavelength is not covered.
   std::size_t position(Wavelength at) const noexcept {
     const auto nm = at.in_nm();
-    return !nm ? at.position(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
+    return !nm ? at.index(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
   }
   /// The same index for loops; -1 if the wavelength is not covered.
   std::int32_t known(Wavelength at) const noexcept {

@@ -68,7 +68,7 @@ IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
     const auto [shift_x, radius_x, shift_y, radius_y] = between_(*nm);
     return {shift_x, shift_y, radius_x, radius_y, shape_.area() * radius_x * radius_y};
   }
-  const std::size_t w = at.position(primary_);
+  const std::size_t w = at.index(primary_);
   return w < images_.size() ? images_[w] : Image{};
 }
 

@@ -22,7 +22,7 @@ Route<R> route_of(const kernel::LensView<R>& view, const Options& options, Wavel
   if (const auto nm = all.in_nm()) {
     route.spectral = true;
     route.nm = static_cast<R>(*nm);
-  } else if (const std::size_t wavelength = all.position(view.primary); wavelength < view.wavelengths) {
+  } else if (const std::size_t wavelength = all.index(view.primary); wavelength < view.wavelengths) {
     route.wavelength = wavelength;
   } else {
     static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();

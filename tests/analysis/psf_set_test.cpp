@@ -143,8 +143,8 @@ struct Study {
     own.half_width_mm = half_width;
     own.seed = seed;
     const Lens lens = with_focus(with_f_number(open, point.f_number), focus_mm);
-    return psf_kernel(lens, open, {radians(point.field_deg), -point.distance_mm}, open.wavelength(point.wavelength_nm),
-                      own);
+    return psf_kernel(lens, open, {radians(point.field_deg), -point.distance_mm},
+                      open.wavelength_index(Wavelength::nm(point.wavelength_nm)), own);
   }
   PsfSet set(const PsfSet::Axes& axes) const {
     std::vector<PsfKernel> kernels;

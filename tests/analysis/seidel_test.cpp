@@ -210,10 +210,12 @@ TEST(SeidelSums, ThinLensAtStopEqualsClosedForms) {
       expected.s3 = h * h * power;
       expected.s4 = h * h * power / n;
       expected.s5 = 0;
-      const double dispersion = lens.index(2, lens.wavelength(f_line_nm)) - lens.index(2, lens.wavelength(c_line_nm));
+      const double dispersion = lens.index(2, lens.wavelength_index(Wavelength::nm(f_line_nm))) -
+                                lens.index(2, lens.wavelength_index(Wavelength::nm(c_line_nm)));
       expected.c1 = y * y * power * dispersion / m;
       const SeidelSums found = seidel_sums(lens, {.object_distance = distance, .field_rad = 0.1}, {},
-                                           lens.wavelength(f_line_nm), lens.wavelength(c_line_nm));
+                                           lens.wavelength_index(Wavelength::nm(f_line_nm)),
+                                           lens.wavelength_index(Wavelength::nm(c_line_nm)));
       for (std::size_t i = 0; i < all_terms.size(); ++i) {
         EXPECT_NEAR(found.sums.*all_terms[i], expected.*all_terms[i], 1e-12 * size_of(found, all_terms[i]) + 1e-17)
             << "c1 = " << c1 << ": " << names[i];
@@ -272,7 +274,8 @@ TEST(SeidelSums, StopShiftFollowsItsFormulas) {
   const Lens near = compiled_f_d_c(aspheric_triplet(2)), far = compiled_f_d_c(aspheric_triplet(14));
   const ParaxialField field{.field_rad = 0.15};
   const auto sums_of = [&](const Lens& lens) {
-    return seidel_sums(lens, field, {}, lens.wavelength(f_line_nm), lens.wavelength(c_line_nm));
+    return seidel_sums(lens, field, {}, lens.wavelength_index(Wavelength::nm(f_line_nm)),
+                       lens.wavelength_index(Wavelength::nm(c_line_nm)));
   };
   const SeidelSums a = sums_of(near), b = sums_of(far);
   const ParaxialRays rays = paraxial_rays(near, field), moved = paraxial_rays(far, field);
@@ -301,8 +304,8 @@ TEST(SeidelSums, ScaledLensScalesSums) {
   const Lens lens = compiled_f_d_c(p), scaled = compiled_f_d_c(scale(p, 3));
   for (const double distance : {open, 200.0}) {
     const auto sums_of = [&](const Lens& l, double k) {
-      return seidel_sums(l, {.object_distance = k * distance, .field_rad = 0.2}, {}, l.wavelength(f_line_nm),
-                         l.wavelength(c_line_nm));
+      return seidel_sums(l, {.object_distance = k * distance, .field_rad = 0.2}, {},
+                         l.wavelength_index(Wavelength::nm(f_line_nm)), l.wavelength_index(Wavelength::nm(c_line_nm)));
     };
     const SeidelSums a = sums_of(lens, 1), b = sums_of(scaled, 3);
     for (std::size_t i = 0; i < all_terms.size(); ++i) {

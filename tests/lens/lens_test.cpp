@@ -70,10 +70,10 @@ TEST(Lens, FindsWavelengthsOrNamesThem) {
   p.surfaces[0].medium.vd = 64.2;
   const petzval::Lens lens =
       petzval::compile(p, std::array{486.1327, petzval::d_line_nm}, {.missing_glass = petzval::MissingGlass::abbe});
-  EXPECT_EQ(lens.wavelength(petzval::d_line_nm), 1u);
-  EXPECT_EQ(lens.wavelength(486.1327 + 5e-7), 0u);
+  EXPECT_EQ(lens.wavelength_index(petzval::Wavelength::nm(petzval::d_line_nm)), 1u);
+  EXPECT_EQ(lens.wavelength_index(petzval::Wavelength::nm(486.1327 + 5e-7)), 0u);
   EXPECT_GT(lens.index(1, 0), lens.index(1, 1));
-  expect_error([&] { return lens.wavelength(500); }, {"singlet", "wavelength", 500});
+  expect_error([&] { return lens.wavelength_index(petzval::Wavelength::nm(500)); }, {"singlet", "wavelength", 500});
 }
 
 TEST(Lens, PrimaryWavelengthIsTheReferenceOrNearestToTheDLine) {
@@ -101,9 +101,9 @@ TEST(Lens, FindsWavelengthsByIndexByNmAndByDefault) {
   p.surfaces[0].medium.vd = 64.2;
   const petzval::Lens lens = petzval::compile(p, std::array{486.1327, petzval::d_line_nm, 656.2725},
                                               {.missing_glass = petzval::MissingGlass::abbe});
-  EXPECT_EQ(lens.position({}), 1u);
-  EXPECT_EQ(lens.position(2), 2u);
-  EXPECT_EQ(lens.position(static_cast<std::size_t>(-1)), static_cast<std::size_t>(-2)) << "no lens has so many";
+  EXPECT_EQ(lens.wavelength_index({}), 1u);
+  EXPECT_EQ(lens.wavelength_index(2), 2u);
+  EXPECT_THROW(lens.wavelength_index(static_cast<std::size_t>(-1)), petzval::Error);
   EXPECT_EQ(lens.index(1), lens.index(1, 1));
   EXPECT_EQ(lens.nearest_wavelength(540), 1u);
   EXPECT_EQ(lens.nearest_wavelength(530), 0u);

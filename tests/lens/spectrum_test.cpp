@@ -136,8 +136,7 @@ TEST(Spectrum, CompiledWavelengthsInNmHaveTheirIndices) {
   const Lens lens = compile(prescription, steps(400, 700, 8), by_catalogue());
   for (std::size_t w = 0; w < 8; ++w) {
     const Wavelength own = Wavelength::nm(lens.wavelengths_nm()[w] + 5e-7);
-    EXPECT_EQ(lens.position(own), w);
-    EXPECT_EQ(lens.compiled_position(own), w);
+    EXPECT_EQ(lens.wavelength_index(own), w);
     for (std::size_t space = 0; space <= lens.surface_count(); ++space) {
       EXPECT_EQ(lens.index(space, own), lens.index(space, w));
     }
@@ -160,13 +159,12 @@ TEST(Spectrum, OtherWavelengthsAreRefused) {
   for (const double nm : {nan, infinity, -infinity, 0., -550., 399.9, 700.1}) {
     const Wavelength bad = Wavelength::nm(nm);
     EXPECT_FALSE(lens.covers(bad)) << nm;
-    EXPECT_GE(lens.position(bad), 3u) << nm;
     EXPECT_THROW(lens.index(0, bad), petzval::Error) << nm;
-    EXPECT_THROW(lens.compiled_position(bad), petzval::Error) << nm;
+    EXPECT_THROW(lens.wavelength_index(bad), petzval::Error) << nm;
   }
   EXPECT_TRUE(lens.covers(Wavelength::nm(double{400.f * (1 - 0x1p-24f)})));
   expect_error([&] { lens.index(1, Wavelength::nm(710)); }, {lens.name(), "wavelength", 710});
-  expect_error([&] { lens.compiled_position(Wavelength::nm(510)); }, {lens.name(), "wavelength", 510});
+  expect_error([&] { lens.wavelength_index(Wavelength::nm(510)); }, {lens.name(), "wavelength", 510});
   EXPECT_FALSE(lens.covers(3));
   EXPECT_TRUE(lens.covers(2));
 }
@@ -240,9 +238,9 @@ TEST(Spectrum, EachRayHasItsWavelength) {
   EXPECT_EQ(all.at(7).in_nm(), 500);
   EXPECT_EQ(all.resolved(4).at(7).in_nm(), 500);
   EXPECT_EQ(any.resolved(4).at(1).in_nm(), 550.5);
-  EXPECT_EQ(each.position(0, 4), 2u);
-  EXPECT_EQ(primary.position(0, 4), 4u);
-  EXPECT_GT(any.position(0, 4), 70000u);
+  EXPECT_EQ(each.index(0, 4), 2u);
+  EXPECT_EQ(primary.index(0, 4), 4u);
+  EXPECT_GT(any.index(0, 4), 70000u);
 }
 
 TEST(Clamp, WavelengthsBeyondAGlass_HaveTheIndexAtTheEndOfItsRange) {

@@ -136,22 +136,14 @@ class PETZVAL_API Lens {
   /// it was compiled (within 1e-6 nm); else the compiled wavelength nearest to the d line. The order of the compiled
   /// wavelengths does not matter.
   std::size_t primary_wavelength() const noexcept;
-  /// Wavelength index of a compiled wavelength (within 1e-6 nm).
+  /// Index of a compiled wavelength. Values in nm count as compiled within 1e-6 nm.
   ///
-  /// @throws Error with the list of compiled wavelengths if `nm` was not compiled
-  std::size_t wavelength(double nm) const;
-  /// Wavelength index of the compiled wavelength nearest to `nm`.
+  /// @throws Error with the list of compiled wavelengths if the wavelength was not compiled
+  std::size_t wavelength_index(Wavelength wavelength) const;
+  /// Index of the compiled wavelength nearest to `nm`.
   ///
   /// @throws Error if `nm` is not finite
   std::size_t nearest_wavelength(double nm) const;
-  /// Wavelength index of a Wavelength; an invalid index if its value in nm was not compiled (within 1e-6 nm).
-  ///
-  /// A Wavelength that holds an index is not checked.
-  std::size_t position(Wavelength wavelength) const noexcept;
-  /// Wavelength index of a Wavelength, checked.
-  ///
-  /// @throws Error if the wavelength was not compiled
-  std::size_t compiled_position(Wavelength wavelength) const;
   /// True if rays can be traced at a wavelength: a valid index, or a value in nm within the compiled range.
   ///
   /// The range is extended by the rounding of a float. It is empty if index_error() is infinite.
