@@ -9,6 +9,16 @@
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/prescription/prescription.hpp"
 
+// | f-number | beam | header |
+// |---|---|---|
+// | paraxial_f_number() | first order: focal length by entrance pupil | paraxial/first_order.hpp |
+// | film_side_f_number() | first order: exit pupil to film by exit pupil | paraxial/first_order.hpp |
+// | real_f_number() | exact ray at the rim of the stop; the number of with_f_number() | this |
+// | fastest_f_number() | the same, wide open | this |
+// | equal_area_f_number() | for with_f_number(): an iris with blades has the area of a round one | iris/iris.hpp |
+// | area_f_number() | area of the exact pupil: with blades and obscurations | analysis/transmittance.hpp |
+// | ApertureState::t_number | area_f_number() with losses | analysis/transmittance.hpp |
+
 namespace petzval {
 
 /// f-number |EFL| / (2 y), with the entrance height y of the axis-parallel ray that meets the rim of the stop.
