@@ -94,10 +94,13 @@ examples::Report report_of(const Options& options) {
   return examples::report(std::move(loaded), std::move(subject), declared);
 }
 
-/// The lens at all wavelengths of the report, stopped down and focused.
-petzval::Lens colours_of(const examples::Report& report, const Options& options) {
-  const examples::ReportLight& light = report.subject.light;
-  return set(examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm), options, report.subject);
+/// The lens at all wavelengths of the report, stopped down and focused. with_notes: as compiled_for().
+petzval::Lens colours_of(const examples::Report& report, const Options& options, bool with_notes = true) {
+  const auto& [nm, weights, primary_nm, of_file] = report.subject.light;
+  const petzval::Lens lens = with_notes ? examples::compiled_for(report.loaded, nm, primary_nm)
+                                        : petzval::compile(report.loaded.prescription, nm,
+                                                           examples::compile_options(report.loaded, primary_nm));
+  return set(lens, options, report.subject);
 }
 
 /// Light that passes the lens with --coatings or with the coatings of its file; nullopt without coatings.
@@ -116,20 +119,9 @@ std::optional<examples::LightReport> light_of(const examples::Report& report, co
   }
 }
 
-std::string to_json(const examples::Report& report, const Options& options) {
-  const examples::ReportLight& light = report.subject.light;
-  const auto colours = petzval::compile(report.loaded.prescription, light.wavelengths_nm,
-                                        examples::compile_options(report.loaded, light.primary_nm));
-  const petzval::Lens lens = set(colours, options, report.subject);
-  examples::Json json = examples::to_json(report, lens);
-  json.update(examples::to_json(light_of(report, lens, options)));
-  return json.dump(2) + '\n';
-}
-
-void write_page(const examples::Report& report, const Options& options) {
-  const petzval::Lens lens = colours_of(report, options);
-  const auto light = light_of(report, lens, options);
-  const auto figures = examples::lens_figures(report, lens, light);
+void write_page(const examples::Report& report, const petzval::LensReport& aberrations,
+                const std::optional<examples::LightReport>& light, const Options& options) {
+  const auto figures = examples::lens_figures(report, aberrations, light);
 
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
@@ -139,7 +131,7 @@ void write_page(const examples::Report& report, const Options& options) {
     (options.json ? std::cerr : std::cout) << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
-  write(".html", examples::lens_page(report, lens, figures, light));
+  write(".html", examples::lens_page(report, aberrations, figures, light));
 }
 
 }  // namespace
@@ -185,9 +177,17 @@ int commands::report(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     options.subject_given = subject->given();
     const examples::Report report = report_of(options);
-    if (out->given()) write_page(report, options);
-    if (options.json) std::cout << to_json(report, options);
-    if (out->given() || options.json) return;
+    if (out->given() || options.json) {
+      const petzval::Lens lens = colours_of(report, options, out->given());
+      const auto light = light_of(report, lens, options);
+      const auto aberrations = petzval::lens_report(lens, examples::conditions(report, lens));
+      if (out->given()) write_page(report, aberrations, light, options);
+      if (!options.json) return;
+      examples::Json json = examples::to_json(report, aberrations);
+      json.update(examples::to_json(light));
+      std::cout << json.dump(2) << '\n';
+      return;
+    }
     const bool modelled = !options.coatings.empty() || petzval::states_coatings(report.loaded.lens);
     const auto light = modelled ? light_of(report, colours_of(report, options), options) : std::nullopt;
     if (fields->given() && !light) {

@@ -9,7 +9,6 @@
 #include <limits>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 #include "html_page.hpp"
@@ -27,22 +26,23 @@ namespace {
 /// Writes one row per number and one column per meridian.
 void first_order_table(std::ostream& html, const Report& r) {
   html << "<table>\n";
-  if (r.meridians.size() > 1) {
+  const auto& sections = r.first_order.sections;
+  if (sections.size() > 1) {
     html << "<tr><th></th>";
-    for (const auto& m : r.meridians) html << "<th class=\"number\">" << section_name(m.meridian) << "</th>";
+    for (const auto& m : sections) html << "<th class=\"number\">" << section_name(m.meridian) << "</th>";
     html << "<th></th></tr>\n";
   }
-  for (const Entry& entry : r.main().entries) {
+  for (const Entry& entry : entries(r, r.main())) {
     html << "<tr><td>" << entry.label << "</td>";
-    for (const auto& m : r.meridians) {
-      const auto same =
-          std::ranges::find_if(m.entries, [&](const Entry& other) { return std::string_view(other.key) == entry.key; });
-      html << "<td class=\"number\">" << (same == m.entries.end() ? "" : in_words(same->value)) << "</td>";
+    for (const auto& m : sections) {
+      const auto all = entries(r, m);
+      const auto same = std::ranges::find(all, entry.label, &Entry::label);
+      html << "<td class=\"number\">" << (same == all.end() ? "" : in_words(same->value)) << "</td>";
     }
     html << "<td>" << entry.unit << "</td></tr>\n";
   }
   html << "<tr><td>film, z</td><td class=\"number\">" << in_words(r.loaded.lens.film_z()) << "</td>"
-       << (r.meridians.size() > 1 ? "<td></td>" : "") << "<td>mm</td></tr>\n</table>\n";
+       << (sections.size() > 1 ? "<td></td>" : "") << "<td>mm</td></tr>\n</table>\n";
 }
 
 /// Digits of numbers that are compared with the source: more than sources print, less than rounding changes.
@@ -120,7 +120,7 @@ void head_row(std::ostream& html, std::initializer_list<const char*> names) {
 }
 
 /// Wavefront errors of each field and wavelength.
-void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& colours) {
+void wavefront_table(std::ostream& html, const Report& r, const petzval::LensReport& aberrations) {
   if (!r.main().pupils) return;
   html
       << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
@@ -132,31 +132,32 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
          "--json. Errors: of the first RMS and of the Strehl ratio, by the number of rays.</p>\n";
   head_row(html,
            {"field", "wavelength", "RMS", "error", "RMS without tilt", "Strehl", "error", "Z4", "Z5", "Z8", "Z9"});
-  const auto fronts = report_wavefronts(r, colours);
-  const auto& nm = colours.wavelengths_nm();
-  for (std::size_t k = 0; k < fronts.size(); ++k) {
-    const std::string field = number(r.subject.fields.degrees[k / nm.size()], 4) + "\u00b0";
-    if (!fronts[k]) {
-      html << "<tr><td>" << field << "</td><td class=\"number\">" << number(nm[k % nm.size()], 7)
-           << "</td><td>no light</td></tr>\n";
-      continue;
+  const auto nm = aberrations.lens.wavelengths_nm();
+  for (std::size_t field = 0; field < aberrations.wavefront->size(); ++field) {
+    const std::string label = number(r.subject.fields.degrees[field], 4) + "\u00b0";
+    for (std::size_t k = 0; k < nm.size(); ++k) {
+      const std::optional<petzval::Wavefront>& front = (*aberrations.wavefront)[field][k];
+      if (!front) {
+        html << "<tr><td>" << label << "</td><td class=\"number\">" << number(nm[k], 7)
+             << "</td><td>no light</td></tr>\n";
+        continue;
+      }
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      number_row(html, label,
+                 std::array{nm[k], front->rms_waves, front->sampling_error_waves, front->rms_without_tilt,
+                            front->strehl.value_or(none), front->strehl ? front->strehl_error : none, front->zernike[3],
+                            front->zernike[4], front->zernike[7], front->zernike[8]},
+                 4);
     }
-    const petzval::Wavefront& front = *fronts[k];
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    number_row(html, field,
-               std::array{nm[k % nm.size()], front.rms_waves, front.sampling_error_waves, front.rms_without_tilt,
-                          front.strehl.value_or(none), front.strehl ? front.strehl_error : none, front.zernike[3],
-                          front.zernike[4], front.zernike[7], front.zernike[8]},
-               4);
   }
   html << "</table></div>\n";
 }
 
 /// Seidel sums with the paraxial rays of each surface.
-void third_order_table(std::ostream& html, const Report& r, const petzval::Lens& colours) {
-  const auto sums = report_seidel(r, colours);
-  if (!sums) return;
-  const petzval::ParaxialRays rays = petzval::paraxial_rays(colours, largest_field(r.subject, colours));
+void third_order_table(std::ostream& html, const Report& r, const petzval::LensReport& aberrations) {
+  if (!aberrations.seidel) return;
+  const petzval::SeidelSums& sums = *aberrations.seidel;
+  const petzval::ParaxialRays& rays = *aberrations.paraxial_rays;
   html << "<h2>Third order</h2>\n<p class=\"lead\">For the largest field, with a chief ray that rises, in micrometres: "
           "spherical aberration, coma, "
           "astigmatism, Petzval curvature, distortion, axial and lateral colour. Then height (mm) and slope behind the "
@@ -169,11 +170,11 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::Lens&
   };
   for (std::size_t i = 0; i < rays.surfaces.size(); ++i) {
     const auto& [marginal_y, marginal_u, chief_y, chief_u] = rays.surfaces[i];
-    std::vector<double> values = terms(sums->surfaces[i]);
+    std::vector<double> values = terms(sums.surfaces[i]);
     values.insert(values.end(), {marginal_y, marginal_u, chief_y, chief_u});
     number_row(html, std::to_string(r.surface_number(i)), values, 5);
   }
-  number_row(html, "sum", terms(sums->sums), 5);
+  number_row(html, "sum", terms(sums.sums), 5);
   html << "</table></div>\n";
 }
 
@@ -292,9 +293,9 @@ std::string conditions(const ReportSubject& subject) {
 
 }  // namespace
 
-std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colours,
+std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport& aberrations,
                                      const std::optional<LightReport>& light) {
-  const petzval::Lens& lens = r.loaded.lens;
+  const petzval::Lens &lens = r.loaded.lens, &colours = aberrations.lens;
   constexpr std::size_t rays = 5;
   const int first = r.loaded.first_surface_number;
   const double subject_z = examples::subject_z(r.subject, lens);
@@ -310,7 +311,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
     petzval::parallel_for(drawings.size(), 1, threads(),
                           [&](std::size_t k, std::size_t) { result[k].svg = drawings[k](); });
   };
-  const bool limited = r.main().pupils.has_value();
+  const bool limited(r.main().pupils);
   std::vector<double> fields;
   for (std::size_t i = 0; limited && i < r.subject.fields.degrees.size(); ++i) {
     fields.push_back(petzval::radians(r.subject.fields.degrees[i]));
@@ -330,10 +331,12 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
     return result;
   }
 
-  const std::vector<petzval::Spot> spots = report_spots(r, colours);
-  const std::vector<petzval::MtfPoint> mtf = report_mtf(r, spots), mtf_field = report_mtf_over_field(r, colours);
-  const std::vector<double> shifts = report_film_shifts(r, colours, spots);
-  const std::vector<petzval::RayFan> fans = petzval::ray_fans(colours, subject_z, fields);
+  const std::vector<petzval::Spot>& spots = aberrations.spots->values;
+  const std::vector<petzval::RayFan>& fans = aberrations.ray_fans->values;
+  std::vector<double> shifts;
+  if (aberrations.through_focus->size() > 0) {
+    for (const auto& spot : (*aberrations.through_focus)[0]) shifts.push_back(spot.film_shift_mm);
+  }
   const double farthest = std::abs(*std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); }));
 
   add("spots", "Spots",
@@ -372,12 +375,12 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       [&] { return petzval::focus_figure(colours, spots, weights); });
   add("mtf", "Contrast",
       "Contrast of fine lines, by rays. Where the curves of a field separate there is astigmatism or coma.",
-      [&] { return petzval::mtf_figure(colours, subject_z, mtf); });
-  if (!mtf_field.empty()) {
+      [&] { return petzval::mtf_figure(colours, subject_z, aberrations.mtf->values); });
+  if (aberrations.mtf_over_field->size() > 0) {
     add("mtf_field", "Contrast over the field",
         "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "
         "astigmatism or lateral colour.",
-        [&] { return petzval::mtf_field_figure(colours, subject_z, mtf_field); });
+        [&] { return petzval::mtf_field_figure(colours, subject_z, aberrations.mtf_over_field->values); });
   }
   add("colour", "Spherical aberration and colour",
       "Where rays of the axial point cross the axis, over their height on the stop. A bent curve is spherical "
@@ -389,11 +392,11 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
         "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
         "curves on the left are astigmatism.",
         [&] { return petzval::field_figure(lens, subject_z, farthest); });
-    if (const auto sums = report_seidel(r, colours)) {
+    if (aberrations.seidel) {
       add("seidel", "Seidel sums",
           "Third-order aberrations and colour that each surface contributes, for the largest field. Long bars of both "
           "signs that cancel make a lens sensitive to errors.",
-          [&, sums = *sums] { return petzval::seidel_figure(colours, subject_z, sums, first); });
+          [&] { return petzval::seidel_figure(colours, subject_z, *aberrations.seidel, first); });
     }
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
@@ -422,7 +425,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   return result;
 }
 
-std::string lens_page(const Report& r, const petzval::Lens& colours, const std::vector<LensFigure>& figures,
+std::string lens_page(const Report& r, const petzval::LensReport& aberrations, const std::vector<LensFigure>& figures,
                       const std::optional<LightReport>& light) {
   const petzval::Lens& lens = r.loaded.lens;
   const std::string name = escaped_html(lens.name());
@@ -442,8 +445,8 @@ std::string lens_page(const Report& r, const petzval::Lens& colours, const std::
     html << "<h2>" << figure.title << "</h2>\n<figure>\n<div class=\"scroll\">" << figure.svg << "</div><figcaption>"
          << figure.caption << "</figcaption>\n</figure>\n";
   }
-  wavefront_table(html, r, colours);
-  third_order_table(html, r, colours);
+  wavefront_table(html, r, aberrations);
+  third_order_table(html, r, aberrations);
   if (light) light_table(html, *light);
   html << "<h2>Lint</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";

@@ -17,14 +17,14 @@ struct LensFigure {
 
 /// The figures of a lens; only the layout, without rays, if no rim limits the beam.
 ///
-/// @param colours  the lens for the wavelengths of the report, which the spots and the focus curve show
-/// @param light    with coatings; its transmittances are drawn
+/// @param aberrations  lens_report() of the lens at all wavelengths of the light
+/// @param light        with coatings; its transmittances are drawn
 /// @throws petzval::Error if the lens cannot see a field or the subject
-std::vector<LensFigure> lens_figures(const Report& report, const petzval::Lens& colours,
+std::vector<LensFigure> lens_figures(const Report& report, const petzval::LensReport& aberrations,
                                      const std::optional<LightReport>& light);
 
 /// A self-contained HTML page with the figures, the numbers, the prescription and its sources. light: with coatings.
-std::string lens_page(const Report& report, const petzval::Lens& colours, const std::vector<LensFigure>& figures,
-                      const std::optional<LightReport>& light);
+std::string lens_page(const Report& report, const petzval::LensReport& aberrations,
+                      const std::vector<LensFigure>& figures, const std::optional<LightReport>& light);
 
 }  // namespace examples

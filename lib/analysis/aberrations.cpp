@@ -246,18 +246,6 @@ std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wav
   return result;
 }
 
-std::vector<MtfPoint> mtf_over_field(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                     std::span<const double> frequencies_per_mm,
-                                     std::span<const double> wavelength_weights, std::uint32_t samples, int threads) {
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
-  std::vector<Spot> spots(fields_rad.size() * wavelengths);
-  parallel_for(spots.size(), 1, threads, [&](std::size_t at, std::size_t) {
-    const FieldPoint point{fields_rad[at / wavelengths], subject_z};
-    spots[at] = analysis_detail::trace_spot(lens, point, at % wavelengths, samples);
-  });
-  return geometric_mtf(spots, wavelengths, frequencies_per_mm, wavelength_weights, threads);
-}
-
 std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::size_t wavelengths,
                                               std::span<const double> fractions,
                                               std::span<const double> wavelength_weights, int threads) {

@@ -2,7 +2,7 @@
 // Welford's notation: A = n (y c + u) and Abar = n (ybar c + ubar) are the refraction invariants of the marginal ray
 // and the chief ray, H = n (u ybar - ubar y) = A ybar - Abar y is the optical invariant, and a step is the change of a
 // value at a surface. Indices and thicknesses are signed, which covers mirrors.
-#include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/aberrations.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -101,8 +101,8 @@ ParaxialRays paraxial_rays(const Lens& lens, const ParaxialField& field, Wavelen
     marginal.nu -= power * marginal.y;
     chief.nu -= power * chief.y;
     n = n_out;
-    const ParaxialRayPair& at =
-        result.surfaces.emplace_back(ParaxialRayPair{marginal.y, marginal.nu / n, chief.y, chief.nu / n});
+    const ParaxialRays::Pair& at =
+        result.surfaces.emplace_back(ParaxialRays::Pair{marginal.y, marginal.nu / n, chief.y, chief.nu / n});
     marginal.y += lens.surfaces()[i].thickness * at.marginal_u;
     chief.y += lens.surfaces()[i].thickness * at.chief_u;
   }

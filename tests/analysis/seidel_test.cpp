@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/aberrations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,7 +105,7 @@ TEST(ParaxialRays, InvariantIsEqualAtEverySurfaceOfEveryLens) {
     for (const double distance : {open, 1000.0}) {
       const ParaxialRays rays = paraxial_rays(lens, {.object_distance = distance, .field_rad = 0.2});
       for (std::size_t i = 0; i < lens.surface_count(); ++i) {
-        const ParaxialRayPair& r = rays.surfaces[i];
+        const ParaxialRays::Pair& r = rays.surfaces[i];
         const double n = signed_index(lens, i + 1);
         const double rounding =
             1e-12 * (std::abs(n * r.marginal_u * r.chief_y) + std::abs(n * r.chief_u * r.marginal_y));
@@ -125,7 +125,7 @@ TEST(ParaxialRays, MeetStopAndImageOfFirstOrderData) {
     const Pupils pupil = pupils(lens);
     for (const double distance : {open, 1000.0}) {
       const ParaxialRays rays = paraxial_rays(lens, {.object_distance = distance, .field_rad = 0.1});
-      const ParaxialRayPair &stop = rays.surfaces[pupil.stop], &last = rays.surfaces.back();
+      const ParaxialRays::Pair &stop = rays.surfaces[pupil.stop], &last = rays.surfaces.back();
       const double rim = lens.surfaces()[pupil.stop].semi_diameter;
       EXPECT_NEAR(std::abs(stop.marginal_y), rim, 1e-11 * rim) << p.id;
       EXPECT_NEAR(stop.chief_y, 0, 1e-11 * (rim + std::abs(rays.surfaces.front().chief_y))) << p.id;
@@ -390,7 +390,7 @@ TEST(SeidelSums, ChromaticSumsEqualDifferencesOfCloseWavelengths) {
                  image_z = paraxial_image_z(lens, -distance);
     const double shift = paraxial_image_z(lens, -distance, 0) - paraxial_image_z(lens, -distance, 2);
     const auto height = [&](Wavelength wavelength) {
-      const ParaxialRayPair last = paraxial_rays(lens, field, wavelength).surfaces.back();
+      const ParaxialRays::Pair last = paraxial_rays(lens, field, wavelength).surfaces.back();
       return last.chief_y + (image_z - lens.surfaces().back().vertex_z) * last.chief_u;
     };
     EXPECT_NEAR(sums.sums.c1, -n_u * n_u * shift, 1e-4 * size_of(sums, &SeidelTerms::c1)) << distance;

@@ -139,17 +139,6 @@ TEST(SpotDiagram, IsOrderedByFieldThenWavelength) {
   EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
 }
 
-TEST(SpotDiagram, DoesNotDependOnThreads) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const std::array fields{0.0, radians(7.0), radians(10.0)};
-  const auto one = spot_diagram(lens, -infinity, fields, 256), many = spot_diagram(lens, -infinity, fields, 256, 4);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(one[i].x, many[i].x);
-    EXPECT_EQ(one[i].slope_y, many[i].slope_y);
-    EXPECT_EQ(one[i].chief_ray_height, many[i].chief_ray_height);
-  }
-}
-
 // Rays of a moved film are traced for comparison.
 TEST(ThroughFocus, EqualsSpotsOnMovedFilms) {
   const std::array wavelengths{486.1327, 656.2725}, weights{1.0, 3.0};

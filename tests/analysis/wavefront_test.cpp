@@ -19,7 +19,7 @@
 #include "../expect_error.hpp"
 #include "analysis/optical_path.hpp"
 #include "analysis/pupil_nodes.hpp"
-#include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"

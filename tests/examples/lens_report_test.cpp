@@ -6,12 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "petzval/analysis/aberrations.hpp"
-#include "petzval/analysis/seidel.hpp"
-#include "petzval/analysis/spot.hpp"
-#include "petzval/analysis/wavefront.hpp"
+#include "petzval/analysis/report.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -29,10 +25,15 @@ TEST_F(LensReport, NumbersEqualTheLibrary) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const auto json = nlohmann::json::parse(outcome.out);
+  const std::vector<double> wavelengths = json["wavelengths_nm"];
+  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file), wavelengths);
+  const petzval::LensReport report = petzval::lens_report(lens, {.fields_deg = json["fields_deg"]});
+  const nlohmann::json whole = nlohmann::json::parse(petzval::to_json(report));
+  for (const auto& [key, value] : whole.items()) EXPECT_EQ(json[key], value) << key;
 
-  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file));
   const auto first = petzval::first_order(lens);
   const auto pupils = petzval::pupils(lens);
+  const auto edges = petzval::edge_thicknesses(lens);
   EXPECT_EQ(json["effective_focal_length_mm"], first.effective_focal_length);
   EXPECT_EQ(json["back_focal_distance_mm"], first.back_focal_distance);
   EXPECT_EQ(json["front_focal_distance_mm"], first.front_focal_distance);
@@ -47,102 +48,34 @@ TEST_F(LensReport, NumbersEqualTheLibrary) {
   EXPECT_EQ(json["petzval_sum_per_mm"], first.petzval_sum);
   EXPECT_EQ(json["dispersion"], "catalogue");
   EXPECT_EQ(json["stop_surface"], 5);
-  EXPECT_TRUE(json["lint"].is_array());
-
+  ASSERT_EQ(json["edge_thicknesses_mm"].size(), edges.size());
+  EXPECT_EQ(json["edge_thicknesses_mm"][0], edges[0].value());
+  EXPECT_TRUE(json["edge_thicknesses_mm"].back().is_null());
   // Values printed by the sources (data/README.md).
   EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 100.437, 0.0005);
   EXPECT_NEAR(json["f_number"].get<double>(), 1.353, 0.0005);
-}
 
-TEST_F(LensReport, SeidelSumsEqualTheLibrary) {
-  const std::string file = lens("double_gauss_100mm_f1.35");
-  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
-  const std::vector<double> wavelengths = json["wavelengths_nm"];
-  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file), wavelengths);
-  const petzval::ParaxialField field{.field_rad = petzval::radians(json["fields_deg"].back().get<double>())};
-  const petzval::SeidelSums sums = petzval::seidel_sums(lens, field, {}, 0, wavelengths.size() - 1);
-  ASSERT_EQ(json["seidel"].size(), lens.surface_count());
   EXPECT_EQ(json["seidel"][2]["surface"], 2);
-  EXPECT_EQ(json["seidel"][2]["S5"], sums.surfaces[2].s5);
-  EXPECT_EQ(json["seidel_sums"]["S1"], sums.sums.s1);
-  EXPECT_EQ(json["seidel_sums"]["C1"], sums.sums.c1);
-  EXPECT_GT(sums.sums.s4, 0);
-  const petzval::ParaxialRays rays = petzval::paraxial_rays(lens, field);
-  EXPECT_EQ(json["paraxial_rays"].back()["marginal_u"], rays.surfaces.back().marginal_u);
-  EXPECT_EQ(json["paraxial_rays"].back()["chief_y"], rays.surfaces.back().chief_y);
-  EXPECT_EQ(json["optical_invariant_mm"], rays.invariant);
-  const double far = -std::numeric_limits<double>::infinity();
-  const auto front = petzval::wavefront(lens, {.field_rad = field.field_rad, .z = far}, {.wavelength = 0});
-  ASSERT_TRUE(front);
-  ASSERT_EQ(json["wavefront"].size(), json["fields_deg"].size() * wavelengths.size());
-  const auto& last = json["wavefront"][json["wavefront"].size() - wavelengths.size()];
-  EXPECT_EQ(last["field_deg"], json["fields_deg"].back());
-  EXPECT_EQ(last["wavelength_nm"], wavelengths[0]);
-  EXPECT_EQ(last["rms_waves"], front->rms_waves);
-  EXPECT_EQ(last["strehl"].is_null(), !front->strehl);
-  ASSERT_EQ(last["zernike_fringe"].size(), 37u);
-  EXPECT_EQ(last["zernike_fringe"][8], front->zernike[8]);
+  EXPECT_EQ(json["seidel"][2]["S5"], report.seidel->surfaces[2].s5);
+  EXPECT_EQ(json["paraxial_rays"][3]["chief_u"], report.paraxial_rays->surfaces[3].chief_u);
   EXPECT_NEAR(json["ray_fans"][16]["tangential_waves"].get<double>(), 0, 1e-9);  // the chief ray
+  EXPECT_EQ(json["distortion_percent"][2]["f_theta"], *(*report.distortion)[2].f_theta_percent);
+  EXPECT_EQ(json["mtf"][24]["sagittal"], (*report.mtf)[1][3].sagittal);
+  EXPECT_EQ(json["mtf"][24]["diffraction_limit"], (*report.diffraction_limit)[3]);
+  EXPECT_NEAR(json["mtf_over_field"][30]["field_deg"].get<double>(), json["fields_deg"][2].get<double>(), 1e-12);
+  EXPECT_EQ(json["mtf_over_field"][32]["sampling_error"], (*report.mtf_over_field)[10][2].sampling_error);
+  EXPECT_EQ(json["through_focus"][13]["film_shift_mm"], (*report.through_focus)[0][3].film_shift_mm);
+  EXPECT_EQ(json["through_focus"][13]["rms_radius_mm"], *(*report.through_focus)[2][3].rms_radius_mm);
+  EXPECT_EQ(json["encircled_energy"][7]["radius_um"], 1000 * *(*report.encircled_energy)[1][3].radius_mm);
+  EXPECT_EQ(json["longitudinal_aberration"][40]["tangential_mm"],
+            *(*report.longitudinal_aberration)[1][7].tangential_mm);
+  EXPECT_EQ(json["lateral_colour"][8]["chief_ray_shift_um"], 1000 * *(*report.lateral_colour)[2][2]);
+  EXPECT_EQ(json["wavefront"][5]["wavelength_nm"], wavelengths[2]);
+  EXPECT_EQ(json["wavefront"][5]["rms_waves"], (*report.wavefront)[1][2]->rms_waves);
+  EXPECT_EQ(json["wavefront"][5]["zernike_fringe"][8], (*report.wavefront)[1][2]->zernike[8]);
 
   const auto one = nlohmann::json::parse(run("report", {file, "--json", "--wavelengths", "550"}).out);
   EXPECT_TRUE(one["seidel_sums"]["C1"].is_null());
-  const auto squeezed = nlohmann::json::parse(run("report", {LensReport::lens("anamorphic_60mm_2x"), "--json"}).out);
-  EXPECT_TRUE(squeezed["seidel"].is_null());
-  EXPECT_TRUE(squeezed["paraxial_rays"].is_null());
-}
-
-// Rays of the report: 32768 for each field and wavelength, 4096 for MTF over the field.
-TEST_F(LensReport, SpotNumbersEqualTheLibrary) {
-  const std::string file = lens("double_gauss_100mm_f2.0");
-  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
-  const std::vector<double> wavelengths = json["wavelengths_nm"];
-  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file), wavelengths);
-  const double far = -std::numeric_limits<double>::infinity();
-  std::vector<double> fields;
-  for (const double degrees : json["fields_deg"]) fields.push_back(petzval::radians(degrees));
-  const auto spots = petzval::spot_diagram(lens, far, fields, 32768);
-
-  const auto& energy = json["encircled_energy"];
-  const std::vector<double> fractions{0.5, 0.8, 0.9, 0.95};
-  const auto found = petzval::encircled_energy(spots, 3, fractions);
-  ASSERT_EQ(energy.size(), found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(energy[i]["field_deg"], json["fields_deg"][i / 4]);
-    EXPECT_EQ(energy[i]["fraction"], fractions[i % 4]);
-    EXPECT_EQ(energy[i]["radius_um"], 1000 * *found[i].radius_mm);
-  }
-
-  const auto& films = json["through_focus"];
-  const double step = petzval::through_focus_step(lens, spots).value();
-  const std::vector<double> shifts{-2 * step, -step, 0, step, 2 * step};
-  const auto on_films = petzval::through_focus(spots, 3, shifts);
-  ASSERT_EQ(films.size(), 15u);
-  for (std::size_t i = 0; i < films.size(); ++i) {
-    EXPECT_EQ(films[i]["field_deg"], json["fields_deg"][i / 5]);
-    EXPECT_EQ(films[i]["film_shift_mm"], shifts[i % 5]);
-    EXPECT_EQ(films[i]["rms_radius_mm"], *on_films[i].rms_radius_mm);
-  }
-
-  const auto& over_field = json["mtf_over_field"];
-  ASSERT_EQ(over_field.size(), 33u);
-  const std::vector<double> ends{0, fields.back()}, frequencies{10, 20, 40};
-  const auto mtf = petzval::mtf_over_field(lens, far, ends, frequencies);
-  EXPECT_EQ(over_field[2]["frequency_per_mm"], 40);
-  EXPECT_EQ(over_field[2]["tangential"], mtf[2].tangential);
-  EXPECT_NEAR(over_field[30]["field_deg"].get<double>(), json["fields_deg"].back().get<double>(), 1e-12);
-  EXPECT_EQ(over_field[30]["sagittal"], mtf[3].sagittal);
-  EXPECT_EQ(over_field[32]["sampling_error"], mtf[5].sampling_error);
-
-  const auto foci = petzval::longitudinal_aberration(lens, far);
-  const auto& longitudinal = json["longitudinal_aberration"];
-  ASSERT_EQ(longitudinal.size(), foci.size());
-  EXPECT_EQ(longitudinal[40]["wavelength_nm"], wavelengths[1]);
-  EXPECT_EQ(longitudinal[40]["pupil"], foci[40].pupil);
-  EXPECT_EQ(longitudinal[40]["tangential_mm"], *foci[40].tangential_mm);
-  const auto lateral = petzval::chromatic_aberration(lens, far, fields).lateral;
-  ASSERT_EQ(json["lateral_colour"].size(), 9u);
-  EXPECT_EQ(json["lateral_colour"][8]["field_deg"], json["fields_deg"][2]);
-  EXPECT_EQ(json["lateral_colour"][8]["chief_ray_shift_um"], 1000 * *lateral[2][2]);
 }
 
 constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window", "name": "Window",
@@ -162,11 +95,11 @@ TEST_F(LensReport, QuantitiesThatFailNameTheReason) {
     const auto outcome = run("report", {path("window.json"), "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const auto json = nlohmann::json::parse(outcome.out);
-    EXPECT_EQ(json["failures"].empty(), text == two_planes);
     for (const char* key :
          {"ray_fans", "field_curvature", "distortion_percent", "mtf", "mtf_over_field", "through_focus",
           "encircled_energy", "longitudinal_aberration", "lateral_colour", "wavefront"}) {
-      EXPECT_EQ(json.at(key).is_null(), json["failures"].contains(key)) << key;
+      EXPECT_EQ(json.at(key).is_null(), text != two_planes) << key;
+      EXPECT_EQ(json["failures"].contains(key), text != two_planes) << key;
     }
   }
 }
@@ -455,17 +388,6 @@ TEST_F(LensReport, TableOfThePageHasTheNumbersOfTheSource) {
   EXPECT_EQ(row_of(anamorphic, "Table", "1").at(7), "");
   EXPECT_NE(row_of(anamorphic, "Table", "7").at(7), "");
   EXPECT_EQ(anamorphic.find(">Positions</h2>"), std::string::npos);
-}
-
-TEST_F(LensReport, EdgeThicknessesEqualTheLibrary) {
-  const std::string file = lens("double_gauss_100mm_f1.35");
-  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
-  const auto edges = petzval::edge_thicknesses(petzval::compile(petzval::read_prescription(file)));
-  ASSERT_EQ(json["edge_thicknesses_mm"].size(), edges.size());
-  EXPECT_TRUE(edges.front());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    EXPECT_EQ(json["edge_thicknesses_mm"][i], edges[i] ? nlohmann::json(*edges[i]) : nlohmann::json()) << i;
-  }
 }
 
 TEST_F(LensReport, ReportsTheLightOfCoatings) {

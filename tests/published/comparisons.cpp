@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/lens/lens.hpp"

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "petzval/analysis/aberrations.hpp"
-#include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/config.hpp"
@@ -116,7 +115,7 @@ PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span
 ///
 /// @param lens       the lens
 /// @param subject_z  subject plane (lens frame, mm); -inf at infinity
-/// @param points     mtf_over_field() of this lens
+/// @param points     geometric_mtf() of several fields
 /// @throws Error     if there are less than two fields
 PETZVAL_API std::string mtf_field_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
 

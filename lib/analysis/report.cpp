@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "analysis/spot_moments.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace petzval {
+namespace {
+
+/// The result of `compute`, or the message of its Error.
+template <class Compute>
+auto quantity(const Compute& compute) -> LensReport::Quantity<decltype(compute())> {
+  try {
+    return {compute(), {}};
+  } catch (const Error& error) {
+    return {{}, error.what()};
+  }
+}
+
+template <class T>
+LensReport::Grid<T> grid(std::vector<T> values, std::size_t columns) {
+  return {std::move(values), std::max<std::size_t>(columns, 1)};
+}
+
+/// Rays of a spot. The sampling errors grow with lenses of more than 512 surfaces.
+std::uint32_t rays_per_spot(const Lens& lens) {
+  constexpr std::size_t most_hits = 1 << 24;  // rays times surfaces
+  std::uint32_t rays = 32768;
+  while (rays > 256 && rays * lens.surface_count() > most_hits) rays /= 2;
+  return rays;
+}
+
+LensReport::Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t rays) {
+  constexpr std::size_t steps = 10;
+  constexpr std::array frequencies{10.0, 20.0, 40.0};
+  const std::size_t wavelengths = r.lens.wavelengths_nm().size();
+  if (r.largest_field.field_rad == 0) return {};
+  std::vector<Spot> spots((steps + 1) * wavelengths);
+  parallel_for(spots.size(), 1, r.conditions.threads, [&](std::size_t at, std::size_t) {
+    const double field = r.largest_field.field_rad * static_cast<double>(at / wavelengths) / steps;
+    spots[at] = analysis_detail::trace_spot(r.lens, {field, r.conditions.subject_z}, at % wavelengths, rays);
+  });
+  return grid(geometric_mtf(spots, wavelengths, frequencies, r.conditions.wavelength_weights, r.conditions.threads),
+              frequencies.size());
+}
+
+LensReport::Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
+  const auto& weights = r.conditions.wavelength_weights;
+  const auto step = through_focus_step(r.lens, r.spots->values, weights);
+  if (!step) return {};
+  const std::array shifts{-2 * *step, -*step, 0.0, *step, 2 * *step};
+  return grid(through_focus(r.spots->values, r.spots->columns, shifts, weights), shifts.size());
+}
+
+LensReport::Grid<std::optional<double>> chief_ray_shifts(const LensReport& r) {
+  LensReport::Grid<std::optional<double>> shifts{{}, r.spots->columns};
+  for (std::size_t i = 0; i < r.spots->values.size(); ++i) {
+    const auto& at_primary = (*r.spots)[i / shifts.columns][r.lens.primary_wavelength()].chief_ray_height;
+    const auto& height = r.spots->values[i].chief_ray_height;
+    shifts.values.push_back(height && at_primary ? std::optional(*height - *at_primary) : std::nullopt);
+  }
+  return shifts;
+}
+
+LensReport::Grid<std::optional<Wavefront>> wavefronts(const LensReport& r, std::span<const double> fields_rad,
+                                                      std::size_t directions) {
+  const std::size_t wavelengths = r.lens.wavelengths_nm().size();
+  LensReport::Grid<std::optional<Wavefront>> fronts{
+      std::vector<std::optional<Wavefront>>(fields_rad.size() * wavelengths), wavelengths};
+  parallel_for(fronts.values.size(), 1, r.conditions.threads, [&](std::size_t k, std::size_t) {
+    const FieldPoint point{.field_rad = fields_rad[k / wavelengths], .z = r.conditions.subject_z};
+    fronts.values[k] = wavefront(r.lens, point, {.wavelength = k % wavelengths, .directions = directions});
+  });
+  return fronts;
+}
+
+}  // namespace
+
+LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
+  LensReport r{.lens = lens, .conditions = std::move(conditions)};
+  const double z = r.conditions.subject_z;
+  const std::vector<double>& weights = r.conditions.wavelength_weights;
+  const int threads = r.conditions.threads;
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  if (threads < 1) throw Error("threads = " + std::to_string(threads) + "; must be at least 1");
+  if (!weights.empty() && weights.size() != wavelengths) {
+    throw Error(lens.name() + ": wavelength_weights has " + std::to_string(weights.size()) + " values; must have " +
+                std::to_string(wavelengths));
+  }
+  std::vector<double> fields;
+  r.largest_field.object_distance = lens.surfaces().front().vertex_z - z;
+  for (const double field : r.conditions.fields_deg) {
+    fields.push_back(radians(field));
+    r.largest_field.field_rad = std::max(r.largest_field.field_rad, std::abs(fields.back()));
+  }
+
+  const Meridian main = main_meridian(lens);
+  for (const Meridian meridian : {main, main == Meridian::y ? Meridian::x : Meridian::y}) {
+    if (meridian != main && lens.rotationally_symmetric()) continue;
+    r.sections.push_back(
+        {meridian, first_order(lens, {}, meridian), quantity([&] { return pupils(lens, {}, meridian); })});
+  }
+  r.f_number = quantity([&] { return real_f_number(lens); });
+  r.paraxial_rays = quantity([&] { return paraxial_rays(lens, r.largest_field); });
+  r.seidel = quantity([&] {
+    const auto [shortest, longest] = std::ranges::minmax(lens.wavelengths_nm());
+    return seidel_sums(lens, r.largest_field, {}, lens.wavelength_index(Wavelength::nm(shortest)),
+                       lens.wavelength_index(Wavelength::nm(longest)));
+  });
+
+  const std::uint32_t rays = rays_per_spot(lens);
+  r.ray_fans = quantity([&] { return grid(ray_fans(lens, z, fields), wavelengths); });
+  r.field_curvature = quantity([&] { return field_curvature(lens, z, fields); });
+  r.distortion = quantity([&] { return distortion_percent(lens, z, fields); });
+  r.spots = quantity([&] { return grid(spot_diagram(lens, z, fields, rays, threads), wavelengths); });
+  std::vector<double> frequencies;
+  for (int k = 0; k <= 20; ++k) frequencies.push_back(5 * k);
+  r.mtf = quantity([&] {
+    return grid(geometric_mtf(r.spots->values, wavelengths, frequencies, weights, threads), frequencies.size());
+  });
+  r.diffraction_limit = quantity([&] {
+    const double f_number = film_side_f_number(lens);
+    const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
+    std::vector<double> limit;
+    for (const double frequency : frequencies) limit.push_back(diffraction_limited_mtf(frequency, nm, f_number));
+    return limit;
+  });
+  r.mtf_over_field = quantity([&] { return mtf_over_field(r, rays / 8); });
+  r.through_focus = quantity([&] { return spots_through_focus(r); });
+  r.encircled_energy = quantity([&] {
+    constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};
+    return grid(encircled_energy(r.spots->values, wavelengths, fractions, weights, threads), fractions.size());
+  });
+  r.longitudinal_aberration = quantity([&] {
+    auto foci = longitudinal_aberration(lens, z);
+    const std::size_t positions = foci.size() / wavelengths;
+    return grid(std::move(foci), positions);
+  });
+  r.lateral_colour = quantity([&] { return chief_ray_shifts(r); });
+  r.wavefront = quantity([&] { return wavefronts(r, fields, rays < 32768 ? 12 : 48); });
+  return r;
+}
+
+}  // namespace petzval

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../expect_error.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace petzval {
+namespace report_test {
+
+constexpr double far = -std::numeric_limits<double>::infinity();
+
+Lens double_gauss() {
+  return compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{486.1327, 587.5618, 656.2725});
+}
+
+TEST(LensReport, IndicesAreFieldAndWavelength) {
+  const Lens lens = double_gauss();
+  const LensReport r = lens_report(lens, {.fields_deg = {0, 12}, .threads = 2});
+  const std::array off_axis{radians(12.0)}, frequencies{40.0}, fractions{0.9};
+  const auto spots = spot_diagram(lens, far, off_axis, 32768);
+  ASSERT_EQ(r.spots->size(), 2u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ((*r.spots)[1][k].y, spots[k].y);
+    EXPECT_EQ((*r.ray_fans)[1][k].wavelength, k);
+    EXPECT_EQ((*r.ray_fans)[1][k].field_rad, off_axis[0]);
+    EXPECT_EQ((*r.longitudinal_aberration)[k][5].wavelength, k);
+    EXPECT_EQ((*r.lateral_colour)[1][k], chromatic_aberration(lens, far, off_axis).lateral[0][k]);
+    EXPECT_EQ((*r.wavefront)[1][k]->rms_waves, wavefront(lens, {off_axis[0], far}, {.wavelength = k})->rms_waves);
+  }
+  EXPECT_EQ((*r.mtf)[1][8].tangential, geometric_mtf(spots, 3, frequencies)[0].tangential);
+  EXPECT_NEAR((*r.mtf_over_field)[10][2].tangential,
+              geometric_mtf(spot_diagram(lens, far, off_axis, 4096), 3, frequencies)[0].tangential, 1e-12);
+  EXPECT_EQ((*r.encircled_energy)[1][2].radius_mm, encircled_energy(spots, 3, fractions)[0].radius_mm);
+  const double step = through_focus_step(lens, r.spots->values).value();
+  EXPECT_EQ((*r.through_focus)[1][4].film_shift_mm, 2 * step);
+  EXPECT_EQ((*r.through_focus)[1][3].rms_radius_mm, through_focus(spots, 3, std::array{step})[0].rms_radius_mm);
+  EXPECT_EQ((*r.distortion)[1].height_mm, distortion_percent(lens, far, off_axis)[0].height_mm);
+  EXPECT_EQ(r.sections.size(), 1u);
+  EXPECT_EQ(*r.f_number, real_f_number(lens));
+  EXPECT_EQ(r.seidel->sums.c1, seidel_sums(lens, {.field_rad = off_axis[0]}, {}, 0, 2).sums.c1);
+  EXPECT_EQ(to_json(r), to_json(lens_report(lens, {.fields_deg = {0, 12}})));  // with another number of threads
+}
+
+TEST(LensReport, QuantitiesThatFailLeaveTheOthers) {
+  const LensReport squeezed = lens_report(testing::data_lens("anamorphic_60mm_2x"), {.fields_deg = {0, 3}});
+  EXPECT_EQ(squeezed.sections.size(), 2u);
+  EXPECT_FALSE(squeezed.seidel);
+  EXPECT_NE(squeezed.seidel.failure, "");
+  EXPECT_TRUE(squeezed.mtf);
+  testing::expect_error([&] { *squeezed.seidel; }, {squeezed.seidel.failure});
+
+  Prescription cubic = testing::data_prescription("singlet_50mm_biconvex");
+  cubic.surfaces[0].aspheric.push_back({.order = 3, .coefficient = 1e-7});
+  const LensReport third_order = lens_report(compile(cubic), {.fields_deg = {2}});
+  EXPECT_TRUE(third_order.paraxial_rays);
+  EXPECT_FALSE(third_order.seidel);
+  EXPECT_TRUE(third_order.wavefront);
+
+  Prescription window;
+  window.surfaces = {{.thickness = 5, .medium = {.nd = 1.5}}, {.thickness = 50}};
+  const LensReport without_rims = lens_report(compile(window), {.fields_deg = {0, 2}});
+  EXPECT_FALSE(without_rims.sections[0].pupils);
+  EXPECT_TRUE(without_rims.sections[0].first_order.afocal);
+  EXPECT_FALSE(without_rims.spots);
+  EXPECT_EQ(without_rims.encircled_energy.failure, without_rims.spots.failure);
+  const std::string json = to_json(without_rims);
+  EXPECT_NE(json.find("\"mtf\": null"), std::string::npos) << json;
+}
+
+TEST(LensReport, NeedsAWeightForEachWavelengthAndAThread) {
+  const Lens lens = double_gauss();
+  testing::expect_error([&] { lens_report(lens, {.wavelength_weights = {1, 1}}); }, {"wavelength_weights", 2, 3});
+  testing::expect_error([&] { lens_report(lens, {.threads = 0}); }, {"threads", 0});
+}
+
+}  // namespace report_test
+}  // namespace petzval
