@@ -16,6 +16,7 @@ The library is looked for in PETZVAL_LIBRARY (path of libpetzval-c.so), on the s
 import array
 import ctypes
 import ctypes.util
+import json
 import os
 
 try:
@@ -290,6 +291,19 @@ class Lens(_Handle):
     clamped_glasses = property(lambda self: self._texts(2))
     missing_glasses = property(lambda self: self._texts(3))
     prescription = property(lambda self: self._text(4), doc="the lens as JSON")
+
+    def report(self, fields_deg=None, threads=0):
+        """First-order data, pupils and aberrations as a dict, with the keys of lib/docs/reports.md (report).
+
+        fields_deg: field angles; by default 0, 0.7 and 1 of the declared half field, or only 0.
+        """
+        if fields_deg is None:
+            half = self.info.declared_half_field_deg
+            fields_deg = [0, 0.7 * half, half] if half > 0 else [0]
+        pointer, count, _keep = _numbers(fields_deg)
+        text = ctypes.create_string_buffer(1 << 24)
+        _call("lens_report", self._handle, ctypes.c_void_p(pointer), c_size(count), c_int32(threads), text, c_size(len(text)), None)
+        return json.loads(text.value)
 
     def fit_film(self, points, film=None, max_tilt_rad=0):
         """Moves, and with max_tilt_rad also tilts, a film so that points are sharp.

@@ -159,6 +159,17 @@ PETZVAL_C_API petzval_status petzval_lens_get_surface(const petzval_lens* lens, 
  */
 PETZVAL_C_API petzval_status petzval_lens_get_text(const petzval_lens* lens, int32_t kind, size_t index, char* text,
                                                    size_t capacity, size_t* length);
+/**
+ * Copies a report of the lens as JSON, with a final 0, to a buffer: first-order data, pupils and aberrations for a
+ * subject at the distance in focus. lib/docs/reports.md lists the keys (`report`). The report takes up to seconds,
+ * without fields milliseconds; 1 MiB holds the report of three fields and wavelengths.
+ *
+ * - fields_deg: field angles towards +y, seen from the entrance pupil; may be NULL if count is 0
+ * - threads: 0: 1
+ * - text, length: as in petzval_lens_get_text()
+ */
+PETZVAL_C_API petzval_status petzval_lens_report(const petzval_lens* lens, const double* fields_deg, size_t count,
+                                                 int32_t threads, char* text, size_t capacity, size_t* length);
 /** Stops the lens down, from its widest opening: f/2 is refused for a lens that opens to f/2.8. */
 PETZVAL_C_API petzval_status petzval_lens_set_f_number(petzval_lens* lens, double f_number);
 /**

@@ -7,6 +7,7 @@
 #include "fit/film_fit.hpp"
 #include "handles.hpp"
 #include "petzval/analysis/choose_model.hpp"
+#include "petzval/analysis/report.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/formats/lens_file.hpp"
@@ -66,6 +67,12 @@ petzval_status change(petzval_lens* lens, const Change& change_setup) {
     contents.lens = prepared(changed, contents.base);
     contents.setup = std::move(changed);
   });
+}
+
+/// The prescription in the configuration of the lens.
+Prescription own_prescription(const LensContents& contents) {
+  const Prescription& all = *contents.setup.lens.prescription;
+  return configured(all, configuration_of(contents.setup.lens, all).value_or(ConfigurationChoice()));
 }
 
 template <class T>
@@ -204,9 +211,7 @@ petzval_status petzval_lens_get_info(const petzval_lens* handle, petzval_lens_in
     const LensContents& contents = *live(handle, "lens").contents;
     const Lens& lens = contents.lens;
     const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-    const Prescription& all = *contents.setup.lens.prescription;
-    const Prescription own =
-        configured(all, configuration_of(contents.setup.lens, all).value_or(ConfigurationChoice()));
+    const Prescription own = own_prescription(contents);
     petzval_lens_info found{};
     found.size = sizeof found;
     found.focal_length_mm = first.effective_focal_length;
@@ -282,6 +287,22 @@ petzval_status petzval_lens_get_text(const petzval_lens* handle, std::int32_t ki
     const bool ended = found.empty() && kind != PETZVAL_TEXT_NAME;
     if (ended && capacity > 0) given(text, "text") = 0;
     if (!ended) copy_bytes({found.c_str(), found.size() + 1}, text, capacity, length);
+  });
+}
+
+petzval_status petzval_lens_report(const petzval_lens* handle, const double* fields_deg, std::size_t count,
+                                   std::int32_t threads, char* text, std::size_t capacity, std::size_t* length) {
+  return guarded(results(text, capacity), [&] {
+    if (length) *length = 0;
+    const LensContents& contents = *live(handle, "lens").contents;
+    const CameraSetup& setup = contents.setup;
+    if (count > 0) given(fields_deg, "fields_deg");
+    LensReport::Conditions conditions{.fields_deg = {fields_deg, fields_deg + count},
+                                      .threads = threads == 0 ? 1 : threads};
+    const double stated = own_prescription(contents).design.object_distance_mm;
+    conditions.subject_z = setup.focus_mm ? origin_z(contents.lens, setup.focus.origin) - *setup.focus_mm : -stated;
+    const std::string found = to_json(lens_report(contents.lens, std::move(conditions)));
+    copy_bytes({found.c_str(), found.size() + 1}, text, capacity, length);
   });
 }
 

@@ -13,6 +13,7 @@
 
 #include "handles.hpp"
 #include "petzval/analysis/psf.hpp"
+#include "petzval/analysis/report.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
@@ -446,6 +447,24 @@ TEST(CInterface, TextsTellWarningsAndThePrescription) {
   EXPECT_EQ(petzval_lens_get_text(lens.get(), PETZVAL_TEXT_WARNING, 0, small.data(), 4, &length), PETZVAL_OK);
   EXPECT_EQ(length, 0u);
   EXPECT_EQ(petzval_lens_get_text(lens.get(), 77, 0, small.data(), 4, &length), PETZVAL_BAD_ARGUMENT);
+}
+
+TEST(CInterface, ReportsEqualTheReportOfTheLensInFocus) {
+  const LensHandle lens = focused();
+  const auto focused_lens = petzval::with_focus(
+      petzval::with_f_number(petzval::compile(petzval::read_prescription(double_gauss)), 2.8), 2000);
+  const std::string expected =
+      petzval::to_json(petzval::lens_report(focused_lens, {.subject_z = -2000, .fields_deg = {0, 5}, .threads = 2}));
+  const std::array fields{0.0, 5.0};
+  std::vector<char> text(1 << 20);
+  std::size_t length = 0;
+  ASSERT_EQ(petzval_lens_report(lens.get(), fields.data(), 2, 0, text.data(), text.size(), &length), PETZVAL_OK);
+  EXPECT_EQ(length, expected.size() + 1);
+  EXPECT_EQ(std::string(text.data()), expected);
+  EXPECT_EQ(petzval_lens_report(lens.get(), nullptr, 0, 0, text.data(), 4, &length), PETZVAL_TOO_SMALL);
+  EXPECT_GT(length, 4u);
+  EXPECT_EQ(petzval_lens_report(lens.get(), nullptr, 2, 0, nullptr, 0, &length), PETZVAL_BAD_ARGUMENT);
+  EXPECT_EQ(petzval_lens_report(lens.get(), nullptr, 0, -1, nullptr, 0, &length), PETZVAL_REFUSED);
 }
 
 }  // namespace

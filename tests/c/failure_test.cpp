@@ -69,6 +69,7 @@ TEST(CFailures, ResultsOfLensesAreReset) {
   Filled<std::size_t> length;
   EXPECT_RESET(petzval_lens_get_text(nullptr, 0, 0, text, 4, length), text.is_reset() && length.is_reset());
   EXPECT_RESET(petzval_lens_get_text(lens.get(), 77, 0, text, 4, length), text.is_reset() && length.is_reset());
+  EXPECT_RESET(petzval_lens_report(nullptr, nullptr, 0, 0, text, 4, length), text.is_reset() && length.is_reset());
   EXPECT_EQ(petzval_lens_get_text(lens.get(), PETZVAL_TEXT_NAME, 0, text, 4, length), PETZVAL_TOO_SMALL);
   EXPECT_TRUE(text.is_reset());
   EXPECT_GT(length.values[0], 4u);

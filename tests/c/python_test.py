@@ -26,6 +26,8 @@ expect(abs(lens.info.f_number - 2.8) < 1e-9, "f-number")
 expect(abs(lens.info.focal_length_mm - 100.7) < 0.05, "focal length")
 expect(len(lens.surfaces) == lens.info.surface_count, "surfaces")
 expect(petzval.Lens("double_gauss_100mm_f2.0").prescription.startswith("{"), "prescription")
+report = lens.report([0, 5])
+expect(report["f_number"] == lens.info.f_number and [w["field_deg"] for w in report["wavefront"]] == [0, 5], "report")
 film = petzval.Film(columns=600, rows=400)
 camera = petzval.Camera(lens, film, frame="pbrt", origin="film", model="exact_double")
 count = 1000
