@@ -72,8 +72,11 @@ void add_terms(OrderedJson& to, const SeidelTerms& t, bool coloured) {
   add(to, "C1", coloured ? json(t.c1) : OrderedJson(), "C2", coloured ? json(t.c2) : OrderedJson());
 }
 
-void add_seidel(OrderedJson& to, const LensReport& r) {
-  if (!r.seidel) return add(to, "seidel", OrderedJson(), "seidel_sums", OrderedJson());
+void add_seidel(OrderedJson& to, OrderedJson& failures, const LensReport& r) {
+  if (!r.seidel) {
+    add(failures, "seidel", r.seidel.failure);
+    return add(to, "seidel", OrderedJson(), "seidel_sums", OrderedJson());
+  }
   const bool coloured = r.lens.wavelengths_nm().size() > 1;
   OrderedJson list = OrderedJson::list(), sums = OrderedJson::object();
   for (int number = r.conditions.first_surface_number; const SeidelTerms& terms : r.seidel->surfaces) {
@@ -128,13 +131,14 @@ std::string to_json(const LensReport& r) {
     add_section(meridians.add(section.meridian == Meridian::y ? "y" : "x", OrderedJson::object()), section,
                 i == 0 ? r.f_number.value : std::nullopt);
   }
-  add_seidel(report, r);
+  Writer write{report};
+  add_seidel(report, write.failures, r);
+  if (!r.paraxial_rays) add(write.failures, "paraxial_rays", r.paraxial_rays.failure);
   add(report, "paraxial_rays", r.paraxial_rays ? paraxial_rays_json(r, *r.paraxial_rays) : OrderedJson());
   add(report, "optical_invariant_mm", member(r.paraxial_rays.value, &ParaxialRays::invariant));
 
   using List = OrderedJson;
   using Index = std::size_t;
-  Writer write{report};
   const auto at = [&](std::size_t field, const auto&... values) {
     return object("field_deg", fields[field], values...);
   };

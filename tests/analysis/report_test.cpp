@@ -6,8 +6,6 @@
 #include <array>
 #include <limits>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
@@ -28,11 +26,9 @@ TEST(LensReport, IndicesAreFieldAndWavelength) {
   const LensReport r = lens_report(lens, {.fields_deg = {0, 12}, .threads = 2});
   const std::array off_axis{radians(12.0)}, frequencies{40.0}, fractions{0.9};
   const auto spots = spot_diagram(lens, far, off_axis, 32768);
-  ASSERT_EQ(r.spots->size(), 2u);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ((*r.spots)[1][k].y, spots[k].y);
     EXPECT_EQ((*r.ray_fans)[1][k].wavelength, k);
-    EXPECT_EQ((*r.ray_fans)[1][k].field_rad, off_axis[0]);
     EXPECT_EQ((*r.longitudinal_aberration)[k][5].wavelength, k);
     EXPECT_EQ((*r.lateral_colour)[1][k], chromatic_aberration(lens, far, off_axis).lateral[0][k]);
     EXPECT_EQ((*r.wavefront)[1][k]->rms_waves, wavefront(lens, {off_axis[0], far}, {.wavelength = k})->rms_waves);
@@ -45,7 +41,6 @@ TEST(LensReport, IndicesAreFieldAndWavelength) {
   EXPECT_EQ((*r.through_focus)[1][4].film_shift_mm, 2 * step);
   EXPECT_EQ((*r.through_focus)[1][3].rms_radius_mm, through_focus(spots, 3, std::array{step})[0].rms_radius_mm);
   EXPECT_EQ((*r.distortion)[1].height_mm, distortion_percent(lens, far, off_axis)[0].height_mm);
-  EXPECT_EQ(r.sections.size(), 1u);
   EXPECT_EQ(*r.f_number, real_f_number(lens));
   EXPECT_EQ(r.seidel->sums.c1, seidel_sums(lens, {.field_rad = off_axis[0]}, {}, 0, 2).sums.c1);
   EXPECT_EQ(to_json(r), to_json(lens_report(lens, {.fields_deg = {0, 12}})));  // with another number of threads
@@ -64,6 +59,7 @@ TEST(LensReport, QuantitiesThatFailLeaveTheOthers) {
   const LensReport third_order = lens_report(compile(cubic), {.fields_deg = {2}});
   EXPECT_TRUE(third_order.paraxial_rays);
   EXPECT_FALSE(third_order.seidel);
+  EXPECT_NE(to_json(third_order).find("\"failures\": {\"seidel\": "), std::string::npos) << to_json(third_order);
   EXPECT_TRUE(third_order.wavefront);
 
   Prescription window;

@@ -18,7 +18,8 @@
 
 namespace petzval {
 
-/// First-order data, pupils and aberrations of a lens. Each quantity has a value or the reason why it has none.
+/// First-order data, pupils and aberrations of a lens. Each quantity has a value, or the reason why it cannot be
+/// computed.
 ///
 ///     const LensReport report = lens_report(lens, {.fields_deg = {0, 14, 20}});
 ///     if (!report.wavefront) std::cout << report.wavefront.failure;
@@ -72,7 +73,7 @@ struct LensReport {
   Quantity<std::vector<FieldFocus>> field_curvature = {};  ///< [field]
   Quantity<std::vector<FieldDistortion>> distortion = {};  ///< [field]
   /// [field][wavelength]: 32768 rays each; fewer for lenses of more than 512 surfaces, so that their reports take
-  /// seconds. `mtf_over_field` uses an eighth of them.
+  /// seconds. `mtf_over_field` has an eighth of this number.
   Quantity<Grid<Spot>> spots = {};
   Quantity<Grid<MtfPoint>> mtf = {};  ///< [field][frequency]: geometric_mtf() at 0, 5, ... 100 per mm
   Quantity<std::vector<double>> diffraction_limit = {};  ///< [frequency]: of `mtf`, at the primary wavelength
@@ -88,7 +89,8 @@ struct LensReport {
 };
 
 /// Computes the report of a focused lens at its compiled wavelengths. This takes up to seconds, without fields
-/// milliseconds. A quantity that fails does not affect the other quantities, except those that are derived from it.
+/// milliseconds. If a quantity fails, only quantities that are derived from it fail, too: MTF, through focus, encircled
+/// energy and lateral colour are derived from `spots`.
 ///
 /// @throws Error  if `threads` is below 1 or the number of weights differs from the number of compiled wavelengths
 PETZVAL_API LensReport lens_report(const Lens& lens, LensReport::Conditions conditions = {});
