@@ -32,11 +32,12 @@ struct LensReport {
     int first_surface_number = 0;                 ///< number of the first surface in to_json()
     int threads = 1;                              ///< at least 1; the result is the same for every number
   };
+  // Vectors of Quantity and Grid have no default values: with them, Clang 14 does not convert the vectors to std::span.
   /// A value, or the reason why it cannot be computed.
   template <class T>
   struct Quantity {
-    std::optional<T> value = {};
-    std::string failure = {};  ///< empty if there is a value
+    std::optional<T> value;
+    std::string failure;  ///< empty if there is a value
 
     explicit operator bool() const noexcept { return value.has_value(); }
     /// @throws Error  with `failure` if there is no value
@@ -46,7 +47,7 @@ struct LensReport {
   /// Values with two indices, grid[row][column].
   template <class T>
   struct Grid {
-    std::vector<T> values = {};  ///< row by row
+    std::vector<T> values;  ///< row by row
     std::size_t columns = 1;
 
     std::size_t size() const noexcept { return values.size() / columns; }  ///< number of rows
