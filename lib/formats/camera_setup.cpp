@@ -11,19 +11,17 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
 
-/// The glasses of a source; nullopt: the tables.
-std::optional<GlassCatalogue> glasses_of(const LensSource& source) {
+GlassCatalogue glasses_of(const LensSource& source, std::vector<GlassFile>* files) {
   if (!source.glasses.empty()) return GlassCatalogue(source.glasses);
-  std::optional<GlassCatalogue> result;
-  for (const std::string& file : source.glass_files) {
-    result = with_glasses(result ? *result : glass_tables(), read_glasses(file).glasses);
+  GlassCatalogue result = glass_tables();
+  for (const std::string& name : source.glass_files) {
+    GlassFile file = read_glasses(name);
+    result = with_glasses(result, file.glasses);
+    if (files) files->push_back(std::move(file));
   }
   return result;
 }
-
-}  // namespace
 
 Prescription read_lens(const LensSource& source, const GlassCatalogue* glasses) {
   if (source.prescription) return *source.prescription;
@@ -46,8 +44,8 @@ std::optional<ConfigurationChoice> configuration_of(const LensSource& source, co
 
 Lens compile(const CameraSetup& setup, const GlassCatalogue* glasses) {
   const LensSource& source = setup.lens;
-  const auto own = glasses ? std::nullopt : glasses_of(source);
-  if (own) glasses = &*own;
+  std::optional<GlassCatalogue> own;
+  if (!glasses && !(source.glasses.empty() && source.glass_files.empty())) glasses = &own.emplace(glasses_of(source));
   const bool thin = source.thin_mm > 0;
   Prescription lens = thin ? thin_elements(source.thin_mm, setup.f_number.value_or(0)) : read_lens(source, glasses);
   lens = configured(lens, configuration_of(source, lens).value_or(ConfigurationChoice()));

@@ -128,4 +128,7 @@ struct GlassFile {
 ///               is invalid or not finite; if no glass is left
 PETZVAL_API GlassFile read_glasses(const std::filesystem::path& file);
 
+/// The glasses of a source: its own, or the tables after its files, which are searched first. files: gets the files.
+PETZVAL_API GlassCatalogue glasses_of(const LensSource& source, std::vector<GlassFile>* files = nullptr);
+
 }  // namespace petzval
