@@ -41,7 +41,8 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string out_file, criterion = "min_rms";
+  std::string out_file;
+  petzval::FocusCriterion criterion = petzval::FocusCriterion::min_rms;
   std::uint32_t samples = 1u << 21;
   examples::App app(
       "Repeats figure 7 of Wu et al. 2010: a point light at 1000 mm from the front vertex, on axis, at the d line, "
@@ -53,8 +54,7 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     examples::want_ending("--out", out_file, ".svg");
-    const examples::BokehSetup setup{.light_mm = examples::wu_light_mm,
-                                     .criterion = examples::named(criterion, examples::focus_criteria)};
+    const examples::BokehSetup setup{.light_mm = examples::wu_light_mm, .focus = {.criterion = criterion}};
     examples::Sheet sheet{"A point light at 1000 mm at five focus distances", {}, {}};
     {
       examples::Progress progress("figure 7", examples::wu_rows().size() * examples::wu_focus_mm.size());
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
         "After figure 7 of Wu et al. 2010. On axis, 587.56 nm, wide open; distances from the front vertex; film "
         "focused "
         "by " +
-        criterion + "."};
+        examples::in_words(criterion) + "."};
     for (const std::string& note : examples::bokeh_notes()) sheet.notes.push_back(note);
     examples::write_svg(examples::draw_sheet(sheet), out_file);
     std::cout << out_file << '\n';

@@ -51,8 +51,8 @@ std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& le
     row.push_back({.lens = wu.lens,
                    .focus_mm = focus,
                    .printed = wu.printed[i],
-                   .criterion = std::string(petzval::name(setup.criterion)),
-                   .origin = setup.origin == petzval::DistanceOrigin::film ? "film" : "front_vertex",
+                   .criterion = std::string(petzval::name(setup.focus.criterion)),
+                   .origin = setup.focus.origin == petzval::DistanceOrigin::film ? "film" : "front_vertex",
                    .found = examples::look(shape),
                    .agrees = false,
                    .rms_radius = image.size.rms_radius,
@@ -77,8 +77,9 @@ std::vector<Verdict> all_verdicts(std::uint32_t samples) {
     for (const FocusCriterion criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {
       for (const DistanceOrigin origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
         progress.step(wu.lens);
-        const auto row = verdicts(
-            wu, loaded.lens, {.light_mm = examples::wu_light_mm, .origin = origin, .criterion = criterion}, samples);
+        const auto row =
+            verdicts(wu, loaded.lens,
+                     {.light_mm = examples::wu_light_mm, .focus = {.criterion = criterion, .origin = origin}}, samples);
         all.insert(all.end(), row.begin(), row.end());
       }
     }

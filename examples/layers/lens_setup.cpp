@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -65,21 +66,24 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help) {
-  examples::add_thin_lens(app, flags.thin_lens_mm);
-  examples::add_lens(app, flags.lens_file, "LENS", "traced by exact rays");
+  examples::add_setup(app, flags.setup);
+  examples::add_thin_lens(app, flags.setup.lens.thin_mm);
+  examples::add_lens(app, flags.setup.lens, "LENS", "traced by exact rays");
   app.add_option("--singlet", flags.singlet,
                  "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
       ->type_name("R1,R2,THICKNESS,GLASS");
-  examples::add_focus_pull(app, flags.pull, flags.focus_mm, frames_help);
-  examples::add_focus(app, flags.focus);
+  examples::add_focus_pull(app, flags.setup.pull, flags.setup.focus_mm, frames_help);
+  examples::add_focus(app, flags.setup.focus);
   constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
   add_number(
       app, "--fov", flags.fov_deg, angle,
       "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film 24 mm high")
       ->default_str("");
   constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
-  add_number(app, "--tilt", flags.tilt_deg, tilt, "tilt of the film about the horizontal axis (degrees)");
-  add_number(app, "--swing", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
+  examples::add_angle(app, "--tilt", flags.setup.film.tilt_rad, tilt,
+                      "tilt of the film about the horizontal axis (degrees)");
+  examples::add_angle(app, "--swing", flags.setup.film.swing_rad, tilt,
+                      "swing of the film about the vertical axis (degrees)");
   app.add_option(
          "--rays",
          [&flags](const std::string& text) {
@@ -99,76 +103,88 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
          "--wavelengths", flags.wavelengths,
          "wavelengths of the rays; d: the d line; rgb: separate rays for red, green and blue, at 650, 510 and 475 nm")
       ->one_of({"d", "rgb"})
-      ->capture_default_str();
-  add_iris(app, flags.iris);
-  add_bokeh(app, flags.bokeh);
+      ->default_str("d");
+  add_iris(app, flags.setup);
+  add_bokeh(app, flags.setup);
   auto* points =
       app.add_option(
-             "--points", flags.surface.points_file,
+             "--points", flags.setup.points_file,
              "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys. A "
              "real lens is replaced by its thick lens")
           ->type_name("POINTS.json");
-  add_surface_kind(app, flags.surface, points);
+  add_surface_kind(app, flags.setup.focal_surface, points);
   add_expressive(app, flags.expressive);
 }
 
 namespace {
 
-/// The lens of the flags, stopped down.
-petzval::Lens lens_of(const LensFlags& flags) {
-  const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
+/// The lens of the flags, stopped down. Completes the set-up.
+petzval::Lens lens_of(LensFlags& flags) {
+  examples::CameraFlags& setup = flags.setup;
+  petzval::LensSource& source = setup.lens;
+  if (!flags.singlet.empty() && !setup.file.empty()) source = {};
+  const int kinds = flags.thin() + (!source.file.empty() || source.prescription) + !flags.singlet.empty();
   if (kinds != 1) {
     throw Error("lens: " + std::to_string(kinds) + " of --thin-lens, LENS and --singlet are given; must be 1");
   }
-  const bool thin = flags.thin_lens_mm > 0;
-  if (thin && !(flags.iris.f_number > 0)) throw Error("--thin-lens needs --f-number");
+  if (flags.thin() && !setup.f_number) throw Error("--thin-lens needs --f-number");
+  if (flags.thin()) setup.focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
+  const bool coloured = flags.coloured();
   // The focus is set at the d line, even if the colours have their own wavelengths.
-  std::vector<double> wavelengths{petzval::d_line_nm};
-  if (flags.coloured()) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(wavelengths));
-  examples::IrisSetup iris = flags.iris;
-  petzval::Lens lens = [&] {
-    if (!flags.lens_file.file.empty()) return examples::load_lens(flags.lens_file, wavelengths).lens;
-    const petzval::GlassCatalogue& glasses = petzval::glass_tables();
-    if (!thin && iris.f_number == 0) iris.f_number = 2;
-    return petzval::compile(
-        thin ? petzval::thin_elements(flags.thin_lens_mm, flags.iris.f_number) : singlet_of(flags.singlet, glasses),
-        wavelengths, {.glasses = &glasses});
-  }();
-  if (thin) iris.f_number = 0;  // the lens has this f-number
-  return examples::stopped_down(lens, iris);
+  source.wavelengths_nm = {petzval::d_line_nm};
+  if (coloured) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(source.wavelengths_nm));
+  if (!flags.singlet.empty()) {
+    source.prescription = singlet_of(flags.singlet, petzval::glass_tables());
+    if (!setup.f_number) setup.f_number = 2;
+  }
+  const petzval::Lens compiled = examples::load_lens(setup, source.wavelengths_nm).lens;
+  petzval::Lens lens = examples::stopped_down(compiled, setup);
+  setup.f_number = setup.used_with(compiled).f_number;
+  return lens;
 }
 
-/// The lens focused at a distance, without a focal surface. film_height_mm: 0: by --fov.
+/// The lens focused at a distance, without a focal surface.
+///
+/// angle_rad       vertical angle of the picture; 0: by the height of the film
+/// film_height_mm  0: by the angle, or of the set-up
 LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double focus_mm, int columns, int rows,
-                 double film_height_mm = 0) {
-  const bool thin = flags.thin_lens_mm > 0;
-  if (thin && !(focus_mm > flags.thin_lens_mm)) {
-    throw Error("--focus = " + number(focus_mm) + "; must be more than the focal length, " +
-                number(flags.thin_lens_mm) + ": nearer subjects have no real image");
+                 double angle_rad, double film_height_mm = 0) {
+  const examples::CameraFlags& setup = flags.setup;
+  const double thin_mm = setup.lens.thin_mm;
+  if (thin_mm > 0 && !(focus_mm > thin_mm)) {
+    throw Error("--focus = " + number(focus_mm) + "; must be more than the focal length, " + number(thin_mm) +
+                ": nearer subjects have no real image");
   }
-  petzval::FocusOptions focus = flags.focus.options();
-  if (thin) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
   const petzval::Lens lens =
-      examples::for_flag("--focus", [&] { return petzval::with_focus(unfocused, focus_mm, focus); });
+      examples::for_flag("--focus", [&] { return petzval::with_focus(unfocused, focus_mm, setup.focus); });
   LensView view{.lens = lens,
-                .thin_diameter_mm = thin ? flags.thin_lens_mm / flags.iris.f_number : 0,
+                .thin_diameter_mm = thin_mm > 0 ? thin_mm / *setup.f_number : 0,
+                .film = setup.film,
+                .vertical_angle_rad = angle_rad,
                 .coloured = flags.coloured(),
-                .controls = controls_of(flags.bokeh)};
-  view.vertical_angle_rad = petzval::radians(flags.fov_deg > 0 ? flags.fov_deg : 30);
-  const double height = film_height_mm > 0          ? film_height_mm
-                        : thin || flags.fov_deg > 0 ? petzval::film_height_for_angle(lens, view.vertical_angle_rad)
-                                                    : 24;
-  view.film = {.width_mm = height * columns / rows,
-               .height_mm = height,
-               .columns = columns,
-               .rows = rows,
-               .z_mm = lens.film_z(),
-               .tilt_rad = petzval::radians(flags.tilt_deg),
-               .swing_rad = petzval::radians(flags.swing_deg)};
+                .controls = controls_of(setup),
+                .expressive = setup.camera.expressive,
+                .first_order_only = !setup.file.empty() && setup.camera.model.is_first_order()};
+  petzval::Film& film = view.film;
+  if (film_height_mm > 0) film.height_mm = film_height_mm;
+  if (film_height_mm == 0 && angle_rad > 0) film.height_mm = petzval::film_height_for_angle(lens, angle_rad);
+  if (thin_mm > 0 && angle_rad == 0) {
+    const double half = std::atan(film.height_mm / petzval::film_height_for_angle(lens, std::numbers::pi / 2));
+    view.vertical_angle_rad = petzval::radians(std::round(2e9 * petzval::degrees(half)) / 1e9);  // as of --fov
+  }
+  film.width_mm = film.height_mm * columns / rows;
+  film.columns = columns, film.rows = rows;
+  film.z_mm = film.z_mm.value_or(lens.film_z());
   // Depths of layers count from the entrance pupil.
-  view.focus_depth_mm = focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, focus.origin);
-  if (!flags.expressive.change_nothing()) view.expressive = expressive_of(flags.expressive, lens, view.film);
+  view.focus_depth_mm = focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, setup.focus.origin);
+  if (!flags.expressive.change_nothing()) view.expressive = expressive_of(flags.expressive, lens, film);
   return view;
+}
+
+/// Vertical angle of the flags; 0: as the film of --setup, or a film 24 mm high, covers it.
+double angle_of(const LensFlags& flags) {
+  const bool usual = flags.thin() && flags.setup.file.empty();
+  return petzval::radians(flags.fov_deg > 0 ? flags.fov_deg : usual ? 30 : 0);
 }
 
 }  // namespace
@@ -177,8 +193,8 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     : flags_(flags),
       pose_(pose),
       keyed_(keyed),
-      unfocused_(lens_of(flags)),
-      view_(view_of(flags, unfocused_, flags.focus_mm, columns, rows)),
+      unfocused_(lens_of(flags_)),
+      view_(view_of(flags_, unfocused_, *flags.setup.focus_mm, columns, rows, angle_of(flags_))),
       pattern_{flags.rays, flags.supersample, flags.jitter, flags.over_pixels},
       layers_(view_.layers(flags.supersample)) {
   if (flags.rays == 0) {
@@ -186,9 +202,9 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     pattern_.jitter = flags.jitter || !view_.thin();
   }
   if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.film);
-  if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
+  if (keyed_ && !flags.setup.points_file.empty()) points_ = examples::read_focus_points(flags.setup.points_file);
   view_.surface = surface_at(0);
-  if (model() == petzval::ModelKind::thick) {
+  if (model() == petzval::ModelKind::thick && !view_.first_order_only) {
     examples::note(std::string(view_.surface ? "--points" : "an expressive lens") + ": " + name() +
                    " is replaced by its thick lens, without aberrations and vignetting");
   }
@@ -198,27 +214,41 @@ double BlurLens::focal_length_mm() const { return petzval::first_order(view_.len
 
 void BlurLens::focus_at(double focus_mm, bool keep_film) {
   const petzval::Film film = view_.film;
-  view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, keep_film ? film.height_mm : 0);
+  view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, view_.vertical_angle_rad,
+                  keep_film ? film.height_mm : 0);
+  view_.surface = surface_at(0);
   layers_ = view_.layers(flags_.supersample);
 }
 
-std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) const {
-  if (flags_.surface.points_file.empty()) return {};
-  if (!keyed_) {
-    const petzval::Camera plain = view_.camera(1);
+petzval::CameraSetup BlurLens::setup() const {
+  petzval::CameraSetup result = flags_.setup;
+  const std::optional<double> z_mm = result.film.z_mm;
+  result.film = view_.film, result.film.z_mm = z_mm;
+  result.coating.reset();
+  result.camera = {.model = model(),
+                   .normalisation = petzval::Normalisation::unity_on_axis,
+                   .bokeh = view_.controls,
+                   .expressive = view_.expressive};
+  return result;
+}
+
+std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
+  examples::CameraFlags& setup = flags_.setup;
+  if (setup.points_file.empty() && setup.focal_points.empty()) return {};
+  const petzval::Camera plain = view_.camera(1);
+  if (!keyed_ && !setup.points_file.empty()) {
     const renderer::LensCamera in_world(plain, pose_);
-    return examples::read_focal_surface(flags_.surface, plain, flags_.focus.distance_origin(), flags_.focus_mm,
-                                        [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); })
-        .surface;
+    return examples::read_focal_surface(setup.points_file, setup, plain,
+                                        [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); });
   }
-  const petzval::IdealLens ideal = petzval::thick_lens(view_.lens);
-  const std::vector<petzval::FocalPoint> seen =
-      petzval::focal_points(ideal, view_.film, points_, {.time = time, .film = view_.film});
-  if (seen.empty()) return view_.surface;  // keep the previous surface
-  return petzval::FocalSurface(
-      ideal, view_.film, seen,
-      {.kind = flags_.surface.kind == "shepard" ? petzval::SurfaceKind::shepard : petzval::SurfaceKind::affine,
-       .beta = flags_.surface.beta});
+  const petzval::IdealLens ideal = petzval::thick_lens(plain.lens());
+  if (!points_.empty()) {
+    std::vector<petzval::FocalPoint> seen =
+        petzval::focal_points(ideal, view_.film, points_, {.time = time, .film = view_.film});
+    if (seen.empty()) return view_.surface;  // keep the previous surface
+    setup.focal_points = std::move(seen);
+  }
+  return petzval::FocalSurface(ideal, plain.film(), setup.focal_points, setup.focal_surface);
 }
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {

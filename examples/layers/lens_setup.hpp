@@ -11,40 +11,37 @@
 #include "petzval/focus/focus_point.hpp"
 #include "renderer/scene_description.hpp"
 #include "support/bokeh_flags.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/expressive_flags.hpp"
 #include "support/focal_surface_setup.hpp"
 #include "support/focus_pull.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 
 namespace lens_blur {
 
 /// Command line of a lens that blurs layers.
 struct LensFlags {
-  double thin_lens_mm = 0;  ///< focal length; 0: no thin lens
-  examples::LensInput lens_file;
+  examples::CameraFlags setup;
   std::string singlet;
-  double focus_mm = 0, fov_deg = 0;
-  examples::FocusPull pull;  ///< a focus that moves; focus_mm is then its first distance
-  examples::FocusFlags focus;
-  double tilt_deg = 0, swing_deg = 0;
+  double fov_deg = 0;
   std::uint32_t rays = 0;  ///< 0: 256, or 512 for traced surfaces with jitter
   /// Numbers of rays that are compared with each other; `rays` is the last. Empty if --rays is not given.
   std::vector<std::uint32_t> ray_counts;
   std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
   bool over_pixels = false;       ///< as RayPattern
-  std::string wavelengths = "d";
+  std::string wavelengths;        ///< "d" or "rgb"; empty: as in --setup, else "d"
   bool jitter = false;
-  examples::IrisSetup iris;
-  examples::BokehFlags bokeh;
-  examples::FocalSurfaceSetup surface;
   examples::ExpressiveFlags expressive;
 
+  bool thin() const noexcept { return setup.lens.thin_mm > 0; }
   /// True if the colours have rays of their own.
-  bool coloured() const noexcept { return wavelengths == "rgb"; }
+  bool coloured() const noexcept {
+    return wavelengths.empty() ? setup.lens.wavelengths_nm.size() > 2 : wavelengths == "rgb";
+  }
 };
 
+/// Adds --setup and the flags of the lens.
 /// @param frames_help  names of the results of --frames
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help);
 
@@ -60,6 +57,8 @@ class BlurLens {
   const std::string& name() const noexcept { return view_.lens.name(); }
   petzval::ModelKind model() const noexcept { return view_.model(); }
   double focal_length_mm() const;
+  /// The set-up of the picture, for reports.
+  petzval::CameraSetup setup() const;
   /// Focuses at another distance. keep_film: the film keeps its size, otherwise the picture keeps its angle (--fov).
   void focus_at(double focus_mm, bool keep_film);
   /// Changes the number of rays per pixel.
@@ -69,7 +68,7 @@ class BlurLens {
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
 
  private:
-  std::optional<petzval::FocalSurface> surface_at(double time) const;
+  std::optional<petzval::FocalSurface> surface_at(double time);
 
   LensFlags flags_;
   renderer::Pose pose_;

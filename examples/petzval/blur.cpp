@@ -116,7 +116,8 @@ class Job {
     std::optional<examples::Progress> progress;
     if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
     // A distance out of reach is refused before the first frame.
-    if (options_.lens.pull.moves()) lens_.focus_at(options_.lens.pull.nearest_mm(), input_.scene() != nullptr);
+    if (options_.lens.setup.pull.moves())
+      lens_.focus_at(options_.lens.setup.pull.nearest_mm(), input_.scene() != nullptr);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
       if (progress) progress->step("frame " + std::to_string(frame + 1));
       try {
@@ -141,9 +142,9 @@ class Job {
 
  private:
   void do_frame(std::uint32_t frame, const std::filesystem::path& folder, const std::string& number) {
-    const examples::FocusPull& pull = options_.lens.pull;
+    const examples::FocusPull& pull = options_.lens.setup.pull;
     const double time = pull.time_s(frame);
-    double focus_mm = options_.lens.focus_mm;
+    double focus_mm = *options_.lens.setup.focus_mm;
     if (pull.moves()) {
       focus_mm = pull.distance_mm(frame, options_.frames);
       // The camera of a file keeps its angle.
@@ -199,7 +200,7 @@ class Job {
               {"highlights_above", threshold},
               {"highlights", statistics.highlights},
               {"supersample", side_}};
-    if (options_.lens.surface.points_file.empty()) json["focus_mm"] = examples::finite_or_null(focus_mm);
+    if (options_.lens.setup.points_file.empty()) json["focus_mm"] = examples::finite_or_null(focus_mm);
     if (options_.compare) compare(rays, picture, json);
     if (options_.frames > 1 && frame * most_shown / options_.frames >= shown_.size()) {
       const bool infinite = std::isinf(focus_mm);
@@ -208,8 +209,9 @@ class Job {
                          : infinite    ? "infinity"
                                        : examples::number(focus_mm / 1000, 3) + " m"}});
     }
+    if (frame == 0) result_["setup"] = Json::parse(petzval::to_json(lens_.setup()));
     if (options_.frames == 1) {
-      result_ = json;
+      result_.update(json);
     } else {
       result_["frames"].push_back(json);
     }
@@ -384,7 +386,12 @@ int commands::blur(int argc, char** argv) {
   examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] {
-    options.frames = options.lens.pull.count(options.lens.focus.origin, options.lens.surface.points_file);
+    const petzval::Film& film = options.lens.setup.film;
+    if (!options.lens.setup.file.empty() && !options.input.scene.empty() && options.input.width == 0) {
+      options.input.width = static_cast<std::uint32_t>(film.columns);
+      options.input.height = static_cast<std::uint32_t>(film.rows);
+    }
+    options.frames = options.lens.setup.pull.count(options.lens.setup.focus.origin, options.lens.setup.points_file);
     Job(options).run();
   });
 }

@@ -67,7 +67,7 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
 }
 
 /// The lens compiled for the wavelengths of the samples. @throws petzval::Error that names the line of a wavelength
-LoadedLens load_for(const Samples& samples, const examples::LensInput& lens_file, const std::string& where) {
+LoadedLens load_for(const Samples& samples, const petzval::LensSource& lens_file, const std::string& where) {
   LoadedLens loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
   for (std::size_t w = 0; w < samples.wavelengths_nm.size(); ++w) {
     try {
@@ -114,10 +114,9 @@ constexpr std::uint32_t usual_columns = 160;
 }  // namespace
 
 int commands::camera_rays(int argc, char** argv) {
-  examples::LensInput lens_file;
-  std::string samples_file, out_file, model = "exact_double";
-  examples::CameraSetup setup;
-  double tilt_deg = 0, swing_deg = 0;
+  std::string samples_file, out_file;
+  examples::CameraFlags setup;
+  setup.camera.model = petzval::ModelKind::exact_double;
   bool povray = false;
   std::uint32_t columns = 0, rows = 0, samples_per_pixel = 32;
   examples::App app(
@@ -125,7 +124,7 @@ int commands::camera_rays(int argc, char** argv) {
       "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down. "
       "With --povray, writes a camera for POV-Ray 3.7 instead.",
       "petzval camera-rays");
-  examples::add_lens(app, lens_file);
+  examples::add_lens(app, setup.lens);
   app.add_option("--table", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
                  "to 1, uniform by area over the model's pupil for the film point")
@@ -152,42 +151,38 @@ int commands::camera_rays(int argc, char** argv) {
                          "is the irradiance of the film point; the weight is 0 unless the fate is transmitted",
                          "FILE")
       ->required();
-  examples::add_model(app, model)->capture_default_str();
+  examples::add_model(app, setup.camera.model);
   examples::add_camera(app, setup);
-  examples::BokehFlags bokeh;
-  examples::add_bokeh(app, bokeh);
-  examples::add_number(app, "--tilt", tilt_deg, below_quarter_turn,
-                       "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
-                       "are in the axes of the film");
-  examples::add_number(app, "--swing", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
+  examples::add_bokeh(app, setup);
+  examples::add_angle(app, "--tilt", setup.film.tilt_rad, below_quarter_turn,
+                      "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
+                      "are in the axes of the film");
+  examples::add_angle(app, "--swing", setup.film.swing_rad, below_quarter_turn, "swing of the film about +y (degrees)");
   app.get_option("--focus")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {
     if (!povray && samples_file.empty()) throw petzval::Error("--table or --povray is required");
-    const auto camera_of = [&](const LoadedLens& loaded, petzval::Film film, petzval::Normalisation normalisation) {
-      film.tilt_rad = petzval::radians(tilt_deg), film.swing_rad = petzval::radians(swing_deg);
+    const auto camera_of = [&](const LoadedLens& loaded, const petzval::Film& film,
+                               petzval::Normalisation normalisation) {
       const petzval::Lens lens = examples::focused(loaded, setup);
       examples::say_what_does_not_fit(lens, film, povray ? "--size" : "");
-      return petzval::Camera(lens, film,
-                             {.model = *petzval::model_named(model),
-                              .normalisation = normalisation,
-                              .bokeh = examples::controls_of(bokeh)});
+      return petzval::Camera(
+          lens, film,
+          {.model = setup.camera.model, .normalisation = normalisation, .bokeh = examples::controls_of(setup)});
     };
     if (povray) {
-      const petzval::Film film = setup.film(columns, rows, usual_columns);
+      const petzval::Film film = setup.sized_film(columns, rows, usual_columns);
       const double rays = 1.0 * film.columns * film.rows * samples_per_pixel;
       if (rays > most_povray_rays) {
         throw petzval::Error("--size and --spp: " + examples::number(rays) + " rays; must be at most 10000000");
       }
-      const auto loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
+      const auto loaded = examples::load_lens(setup.lens, std::array{petzval::d_line_nm});
       const petzval::Camera camera = camera_of(loaded, film, petzval::Normalisation::unity_on_axis);
       return examples::write_text(out_file, examples::povray_camera(camera, samples_per_pixel));
     }
-    const auto [width, height] = setup.film_size();
     const Samples samples = parse_samples(examples::read_text(samples_file), samples_file);
     const petzval::Camera camera =
-        camera_of(load_for(samples, lens_file, samples_file), {.width_mm = width, .height_mm = height},
-                  petzval::Normalisation::irradiance);
+        camera_of(load_for(samples, setup.lens, samples_file), setup.film, petzval::Normalisation::irradiance);
     examples::write_text(out_file, rays_csv(camera, samples));
   });
 }

@@ -35,7 +35,7 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
   std::mt19937 random(20'241);
   std::uniform_real_distribution<double> unit;
   const double near = 1 / options.near_mm, far = 1 / options.far_mm;
-  const double from_z = petzval::origin_z(lens, options.setup.focus.distance_origin());
+  const double from_z = petzval::origin_z(lens, options.setup.focus.origin);
   std::vector<double> depths{from_z - options.near_mm, from_z - options.far_mm};
   for (int k = 0; k < 3; ++k) depths.push_back(from_z - 1 / (far + unit(random) * (near - far)));
   const petzval::ErrorSamples samples{.depths_z = depths,
@@ -76,14 +76,11 @@ int commands::choose(int argc, char** argv) {
     examples::say_what_does_not_fit(lens, film, "--size");
     const petzval::ModelChoice choice = petzval::choose_model(
         lens,
-        {.near_mm = options.near_mm,
-         .far_mm = options.far_mm,
-         .film = film,
-         .origin = options.setup.focus.distance_origin()},
+        {.near_mm = options.near_mm, .far_mm = options.far_mm, .film = film, .origin = options.setup.focus.origin},
         {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, examples::threads());
     examples::say_what_is_missing(choice.table);
     const auto visible = examples::visible_lens(loaded, lens);
-    const double subject_z = petzval::origin_z(lens, options.setup.focus.distance_origin()) - options.setup.focus_mm;
+    const double subject_z = petzval::origin_z(lens, options.setup.focus.origin) - *options.setup.focus_mm;
     const auto colour = visible ? examples::daylight_behind(*visible, subject_z) : std::nullopt;
     const auto rows = examples::model_rows(choice.table, film, true);
     const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;

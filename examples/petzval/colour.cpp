@@ -20,11 +20,11 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/interrupt.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/svg_page.hpp"
 #include "support/text.hpp"
@@ -37,20 +37,15 @@ using Weights = std::vector<std::array<double, 3>>;
 constexpr int picture_pixels = 320;
 
 struct Options {
-  examples::LensInput lens_file;
   std::string out_folder, white_point = "D65";
   double subject_mm = 0;                    ///< 0: twenty focal lengths
   std::vector<double> focus_mm, field_deg;  ///< if empty: distances around the light; the axis and 0.7 of the field
-  examples::FocusFlags focus;
-  examples::IrisSetup iris;
+  examples::CameraFlags setup;
   std::uint32_t samples = 1u << 18;
   examples::Output output;
 
   examples::BokehSetup scene(double field) const {
-    return {.light_mm = subject_mm,
-            .origin = focus.distance_origin(),
-            .criterion = focus.options().criterion,
-            .field_rad = petzval::radians(field)};
+    return {.light_mm = subject_mm, .focus = setup.focus, .field_rad = petzval::radians(field)};
   }
 };
 
@@ -126,14 +121,15 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
   const auto set = wavelengths_nm();
   const std::string title =
       lens.name() + ", " +
-      (std::isinf(options.subject_mm)
-           ? std::string("a point light at infinity")
-           : "a point light at " + examples::number(options.subject_mm) + " mm from the " + options.focus.from());
+      (std::isinf(options.subject_mm) ? std::string("a point light at infinity")
+                                      : "a point light at " + examples::number(options.subject_mm) + " mm from the " +
+                                            examples::in_words(options.setup.focus.origin));
   examples::Sheet result{
       title,
       {},
       {"The film is at the focus of the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
-           " nm (" + options.focus.criterion + "). Tiles of a row have the same film scale and their own exposure.",
+           " nm (" + examples::in_words(options.setup.focus.criterion) +
+           "). Tiles of a row have the same film scale and their own exposure.",
        "With three wavelengths each channel has its own image, without intermediate colours."}};
   for (const double field : options.field_deg) {
     for (const bool triple : {false, true}) {
@@ -218,16 +214,16 @@ int commands::colour(int argc, char** argv) {
       "wavelengths for the light of the white point) and LENS_chromatic.json. Images show the film as a photograph "
       "does.",
       "petzval colour");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   examples::add_length(app, "--at", options.subject_mm, examples::positive_length, "distance of the light (mm), or inf")
       ->default_str("20 focal lengths");
   examples::add_lengths(app, "--focus", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->default_str("0.8, 0.9, 1, 1.1, 1.2 of the light's distance; for inf 25, 50, 100 focal lengths, and inf");
-  examples::add_focus(app, options.focus);
+  examples::add_focus(app, options.setup.focus);
   examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)")
       ->default_str("0 and 0.7 of the lens's half field");
-  examples::add_iris(app, options.iris);
+  examples::add_iris(app, options.setup);
   examples::add_white_point(app, options.white_point);
   examples::add_samples(app, options.samples);
   options.output.add(app);
@@ -237,9 +233,9 @@ int commands::colour(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     const auto set = wavelengths_nm();
     const Weights weights = examples::rgb_weights(set, examples::white_light(options.white_point));
-    const auto loaded = examples::load_lens(options.lens_file, set);
+    const auto loaded = examples::load_lens(options.setup.lens, set);
     complete(options, loaded);
-    const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
+    const petzval::Lens lens = examples::stopped_down(loaded.lens, options.setup);
     auto pictures = prepared(lens, options);
     const auto in_focus = examples::focused_scene(lens, options.subject_mm, options.scene(0));
     std::vector<double> fields_rad;
@@ -251,8 +247,8 @@ int commands::colour(int argc, char** argv) {
               {"dispersion", petzval::name(lens.dispersion())},
               {"f_number_real", petzval::real_f_number(lens)},
               {"subject_distance_mm", examples::finite_or_null(options.subject_mm)},
-              {"distance_from", options.focus.origin},
-              {"criterion", options.focus.criterion},
+              {"distance_from", petzval::name(options.setup.focus.origin)},
+              {"criterion", petzval::name(options.setup.focus.criterion)},
               {"white_point", options.white_point},
               {"primary_nm", set[lens.primary_wavelength()]},
               {"rgb_weights", weights},

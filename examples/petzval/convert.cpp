@@ -39,7 +39,7 @@ using petzval::ImportWarning;
 using petzval::Prescription;
 
 struct Options {
-  examples::LensInput in;
+  petzval::LensSource in;
   std::string out;
   std::vector<double> wavelengths_nm;  ///< for an OSL camera; empty: the reference wavelength
   bool strict = false, repair = false, json = false;
@@ -214,7 +214,8 @@ bool convert(const Options& options) {
     throw petzval::Error("--wavelengths: OUT = " + options.out + "; must end in .osl");
   }
   const auto glasses = examples::glasses_of(options.in);
-  auto [whole, configuration, one] = examples::read_configurations(options.in, glasses);
+  Prescription whole = examples::read_whole(options.in, glasses);
+  const auto configuration = petzval::configuration_of(options.in, whole);
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
   // A petzval-lens file keeps the warnings of the file it was converted from.
   const bool of_another = whole.imported && whole.imported->file != std::filesystem::path(options.in.file).filename();
@@ -233,10 +234,11 @@ bool convert(const Options& options) {
     say("repaired", options.in.file, repairs);
   }
   whole = examples::with_matched_glasses(options.in, std::move(whole), glasses);
-  Prescription lens = examples::for_flag(
-      "--configuration", [&all = whole, &chosen = configuration] { return petzval::configured(all, chosen); });
+  Prescription lens = examples::for_flag("--configuration", [&] {
+    return petzval::configured(whole, configuration.value_or(petzval::ConfigurationChoice()));
+  });
   // With --configuration only the chosen position is written, otherwise all positions.
-  const auto losses = output.write(one ? lens : whole, glasses, options);
+  const auto losses = output.write(configuration ? lens : whole, glasses, options);
   say("lost", options.out, losses);
   if (options.json) std::cout << report(whole, lens, glasses, warnings, losses, repairs).dump(2) << '\n';
   return true;

@@ -34,14 +34,14 @@ using examples::number;
 using json = examples::Json;
 
 struct Options {
-  examples::LensInput lens_file;
-  std::string calibration, ray_map, camera, model;
+  std::string calibration, ray_map, camera;
+  petzval::ModelKind model{};
   bool all = false;
   std::uint32_t lens_samples = 16;
   bool half = false;
   std::string wavelengths;
   std::uint32_t columns = 0, rows = 0;
-  examples::CameraSetup setup;
+  examples::CameraFlags setup;
   examples::Output output;
 };
 
@@ -71,7 +71,7 @@ void print(const std::vector<petzval::Calibration>& all) {
 
 /// Writes a ray map and returns its report.
 json write_map(const Options& options, const petzval::Lens& lens) {
-  const petzval::Film film = options.setup.film(options.columns, options.rows, 480);
+  const petzval::Film film = options.setup.sized_film(options.columns, options.rows, 480);
   const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
   const petzval::RayMap map = petzval::ray_map(
       camera,
@@ -99,14 +99,14 @@ std::string title_of(const examples::LoadedLens& loaded, const petzval::Film& fi
 }
 
 petzval::Camera table_camera(const Options& options, const petzval::Lens& lens, const petzval::Film& film) {
-  return petzval::Camera(lens, film, {.model = *petzval::model_named(options.model), .threads = examples::threads()});
+  return petzval::Camera(lens, film, {.model = options.model, .threads = examples::threads()});
 }
 
 /// Writes the table of a camera and returns its report.
 json write_table(const Options& options) {
-  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_of(options, "d"));
+  const examples::LoadedLens loaded = examples::load_lens(options.setup.lens, wavelengths_of(options, "d"));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
-  const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+  const petzval::Film film = options.setup.sized_film(options.columns, options.rows, 1920);
   examples::say_what_does_not_fit(lens, film);
   const std::vector<float> table = camera_table(table_camera(options, lens, film));
   commands::write_camera_table(table, title_of(loaded, film), options.camera);
@@ -115,11 +115,11 @@ json write_table(const Options& options) {
 }
 
 /// The lens in focus, at infinity if it cannot be focused at the distance.
-petzval::Lens focused_or_far(const examples::LoadedLens& loaded, examples::CameraSetup setup) {
+petzval::Lens focused_or_far(const examples::LoadedLens& loaded, examples::CameraFlags setup) {
   try {
     return examples::focused(loaded, setup);
   } catch (const petzval::Error&) {
-    examples::note(loaded.id + " cannot be focused at " + number(setup.focus_mm, 4) +
+    examples::note(loaded.id + " cannot be focused at " + number(*setup.focus_mm, 4) +
                    " mm; its table is focused at infinity");
     setup.focus_mm = std::numeric_limits<double>::infinity();
     return examples::focused(loaded, setup);
@@ -137,7 +137,7 @@ void write_all(const Options& options) {
   for (const std::filesystem::path& file : files) {
     const examples::LoadedLens loaded = examples::load_lens({.file = file.string()}, wavelengths_of(options, "d"));
     const petzval::Lens lens = focused_or_far(loaded, options.setup);
-    petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+    petzval::Film film = options.setup.sized_film(options.columns, options.rows, 1920);
     std::vector<float> table = camera_table(table_camera(options, lens, film));
     if (const double lit = table[PZ_REACH] / film.radius_mm(); !options.setup.film_given && lit < 1) {
       film.width_mm *= lit, film.height_mm *= lit;
@@ -160,11 +160,11 @@ void write(const Options& options) {
     throw petzval::Error("--camera, --calibration or --ray-map is required");
   }
   const bool others = !options.calibration.empty() || !options.ray_map.empty();
-  if (options.all && (others || !options.lens_file.file.empty())) {
+  if (options.all && (others || !options.setup.lens.file.empty())) {
     throw petzval::Error("--all: found LENS, --calibration or --ray-map as well; must be given with --camera DIR only");
   }
   if (options.all) return write_all(options);
-  if (options.lens_file.file.empty()) throw petzval::Error("LENS is required (or --all)");
+  if (options.setup.lens.file.empty()) throw petzval::Error("LENS is required (or --all)");
   if (!options.ray_map.empty()) examples::want_ending("--ray-map", options.ray_map, ".exr");
   json report;
   if (!options.camera.empty()) {
@@ -172,12 +172,12 @@ void write(const Options& options) {
     report["table"] = write_table(options);
   }
   if (!others) return options.output.report(report);
-  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_of(options, "F,d,C"));
+  const examples::LoadedLens loaded = examples::load_lens(options.setup.lens, wavelengths_of(options, "F,d,C"));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
   report["lens"] = lens.name();
   if (!options.ray_map.empty()) report["ray_map"] = write_map(options, lens);
   if (options.calibration.empty()) return options.output.report(report);
-  const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+  const petzval::Film film = options.setup.sized_film(options.columns, options.rows, 1920);
   const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<petzval::Calibration> all = petzval::calibrations(camera);
   const petzval::OmniverseTables tables = petzval::omniverse_tables(camera, {}, 2049, examples::threads());
@@ -241,7 +241,7 @@ int commands::export_camera(int argc, char** argv) {
       "with "
       "the error of each model over the picture (--calibration).",
       "petzval export");
-  examples::add_lens(app, options.lens_file, "LENS", "or --all");
+  examples::add_lens(app, options.setup.lens, "LENS", "or --all");
   examples::Option* const camera =
       app.add_option("--camera", options.camera,
                      "writes the table of the camera: surfaces, pupils, iris and film as floats; .h: C source, .bin: "
@@ -265,7 +265,7 @@ int commands::export_camera(int argc, char** argv) {
   app.add_flag("--half", options.half, "values of the ray map are 16-bit floats")->needs(map);
   examples::add_camera(app, options.setup);
   examples::add_picture_size(app, options.columns, options.rows, 1920);
-  options.model = "exact_float";
+  options.model = petzval::ModelKind::exact_float;
   examples::add_model(app, options.model)->needs(camera);
   app.add_option("--wavelengths", options.wavelengths,
                  "wavelengths of the table (default d) and of the lateral colour (default F,d,C), in nm or as spectral "

@@ -39,10 +39,9 @@ constexpr std::array film_fractions{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of
 int tile_pixels() { return examples::tile_pixels(film_fractions.size()); }
 
 struct Options {
-  examples::LensInput lens_file;
   std::string out_folder, model = "thin_two_disc";
   std::vector<double> light_mm;  // if empty: one nearer and one farther than the focus
-  examples::CameraSetup setup;
+  examples::CameraFlags setup;
   examples::ExpressiveFlags expressive;
   bool from_lens_given = false;
   std::uint32_t samples = 1u << 17;
@@ -129,14 +128,13 @@ Json description(const petzval::ExpressiveLens& expressive) {
 }
 
 void draw(Options options) {
-  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_nm(options));
+  const examples::LoadedLens loaded = examples::load_lens(options.setup.lens, wavelengths_nm(options));
   if (options.expressive.change_nothing() && !options.from_lens_given) {
     options.expressive.from_lens = 1;
     examples::note("no aberrations are given; the aberrations of the lens are used (--from-lens 1)");
   }
   const petzval::Lens lens = examples::focused(loaded, options.setup);
-  const auto [width, height] = options.setup.film_size();
-  const petzval::Film film{.width_mm = width, .height_mm = height};
+  const petzval::Film& film = options.setup.film;
   const petzval::ExpressiveLens expressive = examples::expressive_of(options.expressive, lens, film);
   const petzval::ModelKind model = *petzval::model_named(options.model);
   const petzval::Camera bent(lens, film, {.model = model, .expressive = expressive});
@@ -148,19 +146,19 @@ void draw(Options options) {
   const std::vector<Row> rows{{"real lens", "exact rays", {.model = petzval::ModelKind::exact_float}},
                               {"expressive lens", options.model.c_str(), {.model = model, .expressive = expressive}},
                               {"without aberrations", options.model.c_str(), {.model = model}}};
-  const double focus = options.setup.focus_mm;
+  const double focus = *options.setup.focus_mm;
   std::vector<double> lights = options.light_mm;
   if (lights.empty()) lights = std::isinf(focus) ? std::vector<double>{10000} : std::vector{0.85 * focus, 1.2 * focus};
-  const double from_z = petzval::origin_z(lens, options.setup.focus.distance_origin());
+  const double from_z = petzval::origin_z(lens, options.setup.focus.origin);
   const std::vector<double> fields = fields_rad(lens, film);
   examples::Sheet sheet{
       "Highlights of an expressive lens",
       {},
       {lens.name() + " at f/" + number(petzval::real_f_number(lens), 3) + ", " + examples::focus_caption(focus) +
-           " from the " + options.setup.focus.from() +
+           " from the " + examples::in_words(options.setup.focus.origin) +
            ". A point light over the field, as in a photograph. The tiles of a light have one scale, and each its own "
            "exposure.",
-       "Fields of film points on the diagonal of " + options.setup.film_mm +
+       "Fields of film points on the diagonal of " + number(film.width_mm) + 'x' + number(film.height_mm) +
            " mm. RMS: distance between the film points of rays and their centroid."}};
   Json highlights_json = Json::array();
   examples::Progress progress("expressive lens", lights.size() * rows.size());
@@ -202,7 +200,7 @@ int commands::expressive(int argc, char** argv) {
       "model without aberrations: DIR/highlights.svg, with the numbers of aberrations and highlights in "
       "DIR/expressive.json. The default aberrations are the real lens's.",
       "petzval expressive");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   examples::add_camera(app, options.setup);
   examples::add_expressive(app, options.expressive);
   app.add_option("--model", options.model, "first-order model that gets the aberrations")

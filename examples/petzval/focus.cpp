@@ -21,10 +21,10 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -38,8 +38,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();  // no value
 
 struct Options {
-  examples::LensInput lens_file;
-  std::string origin = "front_vertex";
+  petzval::LensSource lens_file;
+  petzval::DistanceOrigin origin{};
   std::vector<std::string> criteria{"min_rms", "paraxial", "min_max"};
   std::vector<double> distance_mm, field_deg{0}, wavelengths_nm;  // empty: values of the file
   double blur_mm = 0.03, f_number = 0;                            // f_number 0: wide open
@@ -85,9 +85,8 @@ std::vector<double> usual_distances(const petzval::Lens& lens, const petzval::De
 }
 
 petzval::FocusOptions focus_options(const std::string& criterion, const Options& options) {
-  petzval::FocusOptions result{.criterion = examples::named(criterion, examples::focus_criteria),
-                               .origin = examples::named(options.origin, examples::distance_origins),
-                               .fields = {}};
+  petzval::FocusOptions result{
+      .criterion = examples::named(criterion, examples::focus_criteria), .origin = options.origin, .fields = {}};
   for (const double degrees : options.field_deg) result.fields.push_back({petzval::radians(degrees), 1});
   result.wavelength_weights.assign(options.wavelengths_nm.size(), 1);
   return result;
@@ -130,8 +129,7 @@ std::string reason(const petzval::Lens& lens, const Row& row, const Options& opt
 /// Throws for fields without light and for reports without any result. Prints a note for distances that look like
 /// metres.
 void want_answers(const Report& report, const std::vector<double>& distances, const Options& options) {
-  const double z = petzval::origin_z(report.lens, examples::named(options.origin, examples::distance_origins)) -
-                   *std::ranges::max_element(distances);
+  const double z = petzval::origin_z(report.lens, options.origin) - *std::ranges::max_element(distances);
   const bool no_rays =
       std::ranges::any_of(report.rows, [](const Row& r) { return r.focus.status == FocusStatus::no_rays; });
   for (const double field : options.field_deg) {
@@ -154,8 +152,7 @@ void want_answers(const Report& report, const std::vector<double>& distances, co
 Report report(const examples::LoadedLens& loaded, const Options& options) {
   Report result{stopped_down(loaded, options.f_number), {}, {}};
   const auto distances = options.distance_mm.empty()
-                             ? usual_distances(result.lens, loaded.prescription.design,
-                                               examples::named(options.origin, examples::distance_origins))
+                             ? usual_distances(result.lens, loaded.prescription.design, options.origin)
                              : options.distance_mm;
   examples::Progress progress("focus", options.criteria.size() * distances.size());
   for (const std::string& criterion : options.criteria) {
@@ -190,7 +187,7 @@ Json to_json(const Report& report, const Options& options) {
     const Limits& limits = limits_of(report, r.criterion);
     rows.push_back({{"criterion", r.criterion},
                     {"distance_mm", finite_or_null(r.distance)},
-                    {"distance_from", options.origin},
+                    {"distance_from", petzval::name(options.origin)},
                     {"status", r.refusal.empty() ? std::string(petzval::name(r.focus.status)) : "refused"},
                     {"message", r.refusal.empty() ? Json() : Json(r.refusal)},
                     {"film_z_mm", solved(r) ? finite_or_null(r.focus.film_z) : Json()},
@@ -217,8 +214,7 @@ std::string in_words(double value, int decimals) {
 
 std::string to_text(const Report& report, const Options& options) {
   std::ostringstream text;
-  text << report.lens.name() << "\ndistances in mm from the "
-       << examples::in_words(examples::named(options.origin, examples::distance_origins))
+  text << report.lens.name() << "\ndistances in mm from the " << examples::in_words(options.origin)
        << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
        << " mm in diameter (too_blurred: even the sharpest image has a larger blur; increase --f-number or --blur)\n";
   std::string before;

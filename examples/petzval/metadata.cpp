@@ -31,25 +31,24 @@ namespace {
 using examples::number;
 
 struct Options {
-  examples::LensInput lens_file;
   std::string out_folder;
-  examples::CameraSetup setup;
+  examples::CameraFlags setup;
   std::string coatings;  // empty: the coatings of the file
   examples::Output output;
 };
 
 void write(const Options& options) {
-  examples::LensFile source = examples::read_lens(options.lens_file);
+  examples::LensFile source = examples::read_lens(options.setup.lens);
   const double primary_nm = examples::light_of(source).primary_nm;  // as in `petzval report`
   const examples::LoadedLens loaded = examples::compiled(std::move(source), std::array{primary_nm});
   petzval::Lens lens = examples::focused(loaded, options.setup);
   if (const auto coated = examples::coated(lens, options.coatings)) lens = *coated;
-  const auto [width, height] = options.setup.film_size();
+  const auto [width, height] = std::array{options.setup.film.width_mm, options.setup.film.height_mm};
   constexpr int columns = 1920, most_rows = 8 * columns;
   const double rows = std::round(columns * height / width);  // pixels are square
   if (!(rows >= 1 && rows <= most_rows)) {
-    throw petzval::Error("--film = \"" + options.setup.film_mm + "\"; the height must be 1/" + number(columns) +
-                         " to " + number(most_rows / columns) + " times the width");
+    throw petzval::Error("--film = \"" + number(width) + 'x' + number(height) + "\"; the height must be 1/" +
+                         number(columns) + " to " + number(most_rows / columns) + " times the width");
   }
   const petzval::Film film{.width_mm = width, .height_mm = height, .columns = columns, .rows = static_cast<int>(rows)};
   const petzval::LensDistortion distortion(petzval::Camera(lens, film, {.model = petzval::ModelKind::exact_double}));
@@ -100,7 +99,7 @@ int commands::metadata(int argc, char** argv) {
       "Writes the lens sample at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
       "DIR/LENS.stmap.exr. Prints the fit of the Brown-Conrady coefficients.",
       "petzval metadata");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   examples::add_camera(app, options.setup);
   examples::add_coatings(app, options.coatings,
                          "the coatings of the file; if it states none, the files have no T-stop");

@@ -32,10 +32,10 @@ struct Options : examples::ModelOptions {
 /// Half the focus distance, in front of the lens. Infinity is replaced by 100 focal lengths.
 double nearest_mm(const petzval::Lens& lens, const Options& options) {
   const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
-  const double half = std::min(options.setup.focus_mm, far) / 2;
+  const double half = std::min(*options.setup.focus_mm, far) / 2;
   // Macro: if half the distance is inside the lens, use the midpoint between its front and the focus.
-  const double front = petzval::origin_z(lens, options.setup.focus.distance_origin());
-  return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
+  const double front = petzval::origin_z(lens, options.setup.focus.origin);
+  return half > front ? half : (front + std::min(*options.setup.focus_mm, far)) / 2;
 }
 
 std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::Lens& lens, const Options& options) {
@@ -76,8 +76,7 @@ int commands::models(int argc, char** argv) {
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);
     const auto choices = petzval::choose_models(
-        lens, {.near_mm = nearest, .film = film, .origin = options.setup.focus.distance_origin()}, budgets,
-        examples::threads());
+        lens, {.near_mm = nearest, .film = film, .origin = options.setup.focus.origin}, budgets, examples::threads());
     const auto& table = choices.front().table;
     examples::say_what_is_missing(table);
     const auto rows = examples::model_rows(table, film, false);

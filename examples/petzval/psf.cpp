@@ -30,7 +30,6 @@
 #include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/interrupt.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/picture_files.hpp"
 #include "support/svg_page.hpp"
@@ -45,21 +44,20 @@ constexpr int picture_pixels = 512;
 
 struct Options {
   std::vector<std::string> formats;
-  examples::LensInput lens_file;  ///< its options; `lenses` has the names
   std::vector<std::string> lenses;
-  std::string model = "exact_double", out_folder, white_point = "D65";
-  examples::FocusFlags focus;
+  std::string out_folder, white_point = "D65";
+  examples::CameraFlags setup;  ///< `lenses` has the names of its lens file
   std::vector<double> focus_mm, fields_deg{0}, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, tolerance = 0, width_mm = 0, exposure = 1;
   bool diffraction = false;
-  examples::IrisSetup iris;
-  examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
   petzval::Spectrum light;  ///< spectrum of the white point
   examples::Output output;
 
   /// True for rays of the unmodified lens, false for rays of a camera.
-  bool plain() const noexcept { return model == "exact_double" && bokeh.change_nothing(); }
+  bool plain() const noexcept {
+    return setup.camera.model == petzval::ModelKind::exact_double && examples::plain_bokeh(setup);
+  }
 };
 
 struct Picture {
@@ -74,6 +72,7 @@ struct Picture {
 /// A lens and its pictures, by field and focus.
 struct Subject {
   examples::LoadedLens loaded;
+  petzval::CameraSetup setup;  ///< of the first focus
   std::vector<Picture> pictures;
 };
 
@@ -111,19 +110,16 @@ double common_half_width(std::span<const Subject> subjects, const Options& optio
 /// The focused lenses, before tracing. @throws petzval::Error if a focus is out of reach
 std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& options,
                              const petzval::BokehControls& controls) {
-  const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
+  const petzval::Lens lens = examples::stopped_down(loaded.lens, options.setup);
   std::vector<Picture> pictures;
   for (const double field : options.fields_deg) {
-    const examples::BokehSetup setup{.light_mm = options.subject_mm,
-                                     .origin = options.focus.distance_origin(),
-                                     .criterion = options.focus.options().criterion,
-                                     .field_rad = petzval::radians(field)};
+    const examples::BokehSetup setup{
+        .light_mm = options.subject_mm, .focus = options.setup.focus, .field_rad = petzval::radians(field)};
     for (const double focus : options.focus_mm) {
       Picture picture{field, focus, examples::focused_scene(lens, focus, setup), {}, {}, {}, {}};
       examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
       if (!options.plain()) {
-        picture.camera =
-            examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
+        picture.camera = examples::camera_of(picture.scene, {.model = options.setup.camera.model, .bokeh = controls});
       }
       pictures.push_back(std::move(picture));
     }
@@ -137,13 +133,17 @@ examples::Sheet sheet_of(Subject& subject, const Options& options) {
   for (std::size_t i = 0; i < subject.pictures.size(); i += options.focus_mm.size()) {
     sheet.rows.push_back(
         {.title = subject.loaded.lens.name(),
-         .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
-                     examples::number(subject.pictures[i].field_deg) + "°; distances from the " + options.focus.from() +
-                     "; focus " + options.focus.criterion +
-                     (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
-                     (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
-                     (options.model == "exact_double" ? "" : "; " + options.model) +
-                     (options.diffraction ? "; with diffraction" : ""),
+         .subtitle =
+             "point light at " + examples::number(options.subject_mm) + " mm, " +
+             examples::number(subject.pictures[i].field_deg) + "°; distances from the " +
+             examples::in_words(options.setup.focus.origin) + "; focus " +
+             examples::in_words(options.setup.focus.criterion) +
+             (options.setup.f_number ? "; f/" + examples::number(*options.setup.f_number) : "; wide open") +
+             (options.setup.iris.blades > 0 ? "; " + std::to_string(options.setup.iris.blades) + " blades" : "") +
+             (options.setup.camera.model == petzval::ModelKind::exact_double
+                  ? ""
+                  : "; " + std::string(petzval::name(options.setup.camera.model))) +
+             (options.diffraction ? "; with diffraction" : ""),
          .tiles = {}});
     for (Picture& p : std::span(subject.pictures).subspan(i, options.focus_mm.size())) {
       sheet.rows.back().tiles.push_back(std::move(p.tile));
@@ -152,24 +152,26 @@ examples::Sheet sheet_of(Subject& subject, const Options& options) {
   return sheet;
 }
 
-Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
+Json to_json(std::span<const Picture> pictures, const Subject& subject, const Options& options,
              const petzval::BokehControls& controls) {
-  Json json{{"lens", loaded.lens.name()},
-            {"model", options.model},
+  const examples::LoadedLens& loaded = subject.loaded;
+  Json json{{"setup", Json::parse(petzval::to_json(subject.setup))},
+            {"lens", loaded.lens.name()},
+            {"model", petzval::name(options.setup.camera.model)},
             {"lens_ratio", controls.lens_ratio},
             {"rate_of_change", controls.rate_of_change},
             {"weight_distribution", controls.weight_distribution},
             {"weight_strength", controls.weight_strength},
             {"keep_light", controls.keep_light},
-            {"iris_image", options.bokeh.iris_image},
-            {"weight_map", options.bokeh.weight_map},
+            {"iris_image", examples::iris_image(options.setup)},
+            {"weight_map", examples::weight_map(options.setup)},
             {"weights_add_light", controls.edge().light_added()},
             {"dispersion", petzval::name(loaded.lens.dispersion())},
             {"wavelengths_nm", options.wavelengths_nm},
             {"white_point", options.white_point},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
-            {"distance_from", options.focus.origin},
-            {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.iris))},
+            {"distance_from", petzval::name(options.setup.focus.origin)},
+            {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.setup))},
             {"fields_deg", options.fields_deg},
             {"samples", options.samples},
             {"with_diffraction", options.diffraction},
@@ -181,15 +183,16 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     const double airy_radius = petzval::airy_radius(p.scene.lens);
     const petzval::Iris& iris = p.scene.lens.iris();
-    const double iris_area =
-        options.bokeh.iris_image.empty() ? petzval::iris_area(iris) : petzval::iris_area(iris, controls.weight_map);
+    const double iris_area = examples::iris_image(options.setup).empty()
+                                 ? petzval::iris_area(iris)
+                                 : petzval::iris_area(iris, controls.weight_map);
     json["results"].push_back(
         {{"field_deg", p.field_deg},
          {"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
-         {"criterion", options.focus.criterion},
+         {"criterion", petzval::name(options.setup.focus.criterion)},
          {"throughput", p.image.throughput},
-         {"throughput_of_round_iris", options.iris.area == "equal"
+         {"throughput_of_round_iris", options.setup.iris_area == "equal"
                                           ? p.image.throughput * std::numbers::pi / petzval::iris_area(iris)
                                           : p.image.throughput},
          {"centroid_mm", if_any(pair(p.image.size.centroid))},
@@ -263,7 +266,7 @@ void render(std::vector<Subject> subjects, const Options& options, const petzval
         }
         if (p.waves) p.tile.width_mm = picture_pixels * p.waves->pixel_mm;
         p.image.psf.counts = {};  // many lenses and fields must fit into memory
-        lenses.back() = to_json(std::span(subject.pictures).first(i + 1), loaded, options, controls);
+        lenses.back() = to_json(std::span(subject.pictures).first(i + 1), subject, options, controls);
         examples::write_text(numbers, report().dump(1) + '\n');
       }
       const std::filesystem::path file = folder / (loaded.id + "_bokeh.svg");
@@ -298,7 +301,9 @@ int commands::psf(int argc, char** argv) {
       "smaller with --iris-area equal. The lens is focused at the primary wavelength, which is nearest to the d line "
       "(587.5618 nm).",
       "petzval psf");
-  examples::add_lenses(app, options.lens_file, options.lenses);
+  options.setup.camera.model = petzval::ModelKind::exact_double;
+  examples::add_setup(app, options.setup);
+  examples::add_lenses(app, options.setup.lens, options.lenses);
   examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
                        "distance of the light (mm), or inf; at --fields of 90 degrees and more, along the ray from the "
                        "entrance pupil")
@@ -306,14 +311,14 @@ int commands::psf(int argc, char** argv) {
       ->default_str("");
   examples::add_lengths(app, "--focus", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->required();
-  examples::add_focus(app, options.focus);
-  examples::add_wavelengths(
+  examples::add_focus(app, options.setup.focus);
+  const auto* const wavelengths = examples::add_wavelengths(
       app, "--wavelengths", options.wavelengths_nm,
       "wavelengths of the light; several, from 420 to 680 nm, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
-  examples::add_model(app, options.model)->capture_default_str();
-  examples::add_iris(app, options.iris);
-  examples::add_bokeh(app, options.bokeh);
+  examples::add_model(app, options.setup.camera.model);
+  examples::add_iris(app, options.setup);
+  examples::add_bokeh(app, options.setup);
   examples::add_numbers(app, "--fields", options.fields_deg, examples::field_angle,
                         "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
@@ -343,13 +348,21 @@ int commands::psf(int argc, char** argv) {
       throw petzval::Error(
           "--diffraction needs exact rays of the lens as it is; must be without --model and bokeh controls");
     }
+    petzval::LensSource& source = options.setup.lens;
+    if (options.focus_mm.empty()) options.focus_mm = {*options.setup.focus_mm};
+    if (!wavelengths->given() && !source.wavelengths_nm.empty()) {
+      options.wavelengths_nm = source.wavelengths_nm;
+      std::ranges::sort(options.wavelengths_nm);
+    }
     options.light = examples::white_light(options.white_point);
     examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work
-    const petzval::BokehControls controls = examples::controls_of(options.bokeh);
+    const petzval::BokehControls controls = examples::controls_of(options.setup);
     std::vector<Subject> subjects;
+    options.setup.focus_mm = options.focus_mm.front(), source.wavelengths_nm = options.wavelengths_nm;
+    if (options.lenses.empty()) options.lenses = {source.file};
     for (const std::string& lens : options.lenses) {
-      options.lens_file.file = lens;
-      Subject subject{examples::load_lens(options.lens_file, options.wavelengths_nm), {}};
+      source.file = lens;
+      Subject subject{examples::load_lens(options.setup, options.wavelengths_nm), {}, {}};
       for (const Subject& other : subjects) {
         if (other.loaded.id == subject.loaded.id) {
           throw petzval::Error("LENS = " + lens + ": another lens is named " + subject.loaded.id +
@@ -357,6 +370,7 @@ int commands::psf(int argc, char** argv) {
         }
       }
       subject.pictures = focused(subject.loaded, options, controls);
+      subject.setup = options.setup.used_with(subject.loaded.lens);
       subjects.push_back(std::move(subject));
     }
     render(std::move(subjects), options, controls);

@@ -24,10 +24,10 @@
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/psf_job.hpp"
 #include "support/text.hpp"
@@ -42,13 +42,11 @@ using petzval::PsfSetPoint;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Options {
-  examples::LensInput lens_file;
   std::string out_folder;
-  examples::FocusFlags focus;
+  examples::CameraFlags setup;
   petzval::PsfSet::Axes axes{
       .fields_deg = {}, .distances_mm = {}, .wavelengths_nm = {petzval::d_line_nm}, .f_numbers = {}};
   double focus_mm = infinity;
-  examples::IrisSetup iris;
   std::uint32_t samples = 1u << 20, pixels = 129;
   examples::Shard shard;
   bool resume = false, check = false;
@@ -67,17 +65,13 @@ class Scenes {
   /// @throws petzval::Error if the point is not in front of the lens
   examples::BokehScene at(const PsfSetPoint& point) {
     if (!stopped_ || f_number_ != point.f_number) {
-      examples::IrisSetup iris = options_.iris;
-      iris.f_number_flag = "--f-number";
-      if (!wide_open_) iris.f_number = point.f_number;
-      stopped_ = examples::stopped_down(lens_, iris);
+      if (!wide_open_) options_.setup.f_number = point.f_number;
+      stopped_ = examples::stopped_down(lens_, options_.setup);
       f_number_ = point.f_number;
     }
-    auto scene = examples::focused_scene(*stopped_, options_.focus_mm,
-                                         {.light_mm = point.distance_mm,
-                                          .origin = options_.focus.distance_origin(),
-                                          .criterion = options_.focus.options().criterion,
-                                          .field_rad = petzval::radians(point.field_deg)});
+    auto scene = examples::focused_scene(
+        *stopped_, options_.focus_mm,
+        {.light_mm = point.distance_mm, .focus = options_.setup.focus, .field_rad = petzval::radians(point.field_deg)});
     examples::for_flag("--fields", [&] { return petzval::scene_point(scene.lens, scene.light); });
     return scene;
   }
@@ -113,17 +107,17 @@ examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& optio
                            {"dispersion", petzval::name(loaded.lens.dispersion())},
                            {"fields_deg", options.axes.fields_deg},
                            {"distances_mm", std::move(distances)},
-                           {"distance_from", options.focus.origin},
+                           {"distance_from", petzval::name(options.setup.focus.origin)},
                            {"wavelengths_nm", options.axes.wavelengths_nm},
                            {"f_numbers", std::move(f_numbers)},
                            {"wide_open", options.axes.f_numbers.empty()},
                            {"focus_mm", examples::finite_or_null(options.focus_mm)},
-                           {"criterion", options.focus.criterion},
+                           {"criterion", petzval::name(options.setup.focus.criterion)},
                            {"iris",
-                            {{"blades", options.iris.blades},
-                             {"roundness", options.iris.roundness},
-                             {"rotation_deg", options.iris.rotation_deg},
-                             {"area", options.iris.area}}},
+                            {{"blades", options.setup.iris.blades},
+                             {"roundness", options.setup.iris.roundness},
+                             {"rotation_deg", examples::exact_degrees(options.setup.iris.rotation_rad)},
+                             {"area", options.setup.iris_area}}},
                            {"samples", options.samples},
                            {"pixels", options.pixels},
                            {"prescription", Json::parse(petzval::format_prescription(loaded.prescription))},
@@ -230,7 +224,7 @@ void compute(const Options& options) {
     throw petzval::Error(std::string(options.check ? "--check" : "--json") + " with --shard " + options.shard.text() +
                          "; must be used without --shard");
   }
-  const auto loaded = examples::load_lens(options.lens_file, options.axes.wavelengths_nm);
+  const auto loaded = examples::load_lens(options.setup.lens, options.axes.wavelengths_nm);
   const examples::PsfJob job = job_of(loaded, options);
   Scenes scenes(loaded, options);
   want_light(job.axes(), scenes);
@@ -271,14 +265,14 @@ struct Maybe {
   examples::Option* option = nullptr;
 };
 
-void query(const std::string& file, PsfSetPoint point, const std::string& origin, const Maybe& wavelength,
+void query(const std::string& file, PsfSetPoint point, petzval::DistanceOrigin origin, const Maybe& wavelength,
            const Maybe& f_number, const std::string& out) {
   examples::want_ending("--out", out, ".exr");
   std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
   const std::string of_set = examples::distance_from(parts.front());
-  if (origin != of_set) {
-    throw petzval::Error("--from = " + origin + ": the distances of " + file + " count from " + of_set +
-                         "; must be the same");
+  if (petzval::name(origin) != of_set) {
+    throw petzval::Error("--from = " + std::string(petzval::name(origin)) + ": the distances of " + file +
+                         " count from " + of_set + "; must be the same");
   }
   const petzval::PsfSet set = petzval::psf_set_of(std::move(parts), file);
   const auto& nm = set.axes().wavelengths_nm;
@@ -303,7 +297,7 @@ int main_compute(int argc, char** argv) {
       "petzval psf-set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
       "petzval psf-set query FILE.exr --fields F --at D --out PSF.exr   interpolates a PSF at any point",
       "petzval psf-set");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
                         "angles of the light seen from the paraxial entrance pupil (degrees, ascending)")
       ->required();
@@ -316,8 +310,8 @@ int main_compute(int argc, char** argv) {
       ->default_str("wide open");
   examples::add_length(app, "--focus", options.focus_mm, examples::positive_length,
                        "focus distance (mm), or inf; the film is focused for each f-number");
-  examples::add_focus(app, options.focus);
-  examples::add_iris_shape(app, options.iris);
+  examples::add_focus(app, options.setup.focus);
+  examples::add_iris_shape(app, options.setup);
   examples::add_samples(app, options.samples);
   examples::add_count(app, "--size", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
                       "pixels along each side of an image, odd");
@@ -350,7 +344,8 @@ int main_merge(int argc, char** argv) {
 }
 
 int main_query(int argc, char** argv) {
-  std::string file, out, origin = "front_vertex";
+  std::string file, out;
+  petzval::DistanceOrigin origin{};
   PsfSetPoint point;
   Maybe wavelength, f_number;
   examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.",

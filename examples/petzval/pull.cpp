@@ -40,7 +40,7 @@ constexpr std::size_t max_frames = 100000;
 
 struct Options : examples::MovementOptions {
   std::string keys_file, out_folder;
-  examples::FocusFlags focus;
+  petzval::FocusOptions focus;
   double frames_per_s = 24;
   bool tilt = false, json = false;
 };
@@ -79,7 +79,7 @@ class Pull {
   Frame at(double time) {
     petzval::FocusTime moment;
     moment.time = time;
-    if (options_.film_given) moment.film = film_;
+    if (options_.setup.film_given) moment.film = film_;
     const auto targets = petzval::focus_targets(lens_.ideal, points_, moment);
     Frame frame{.time = time, .targets = targets.size()};
     options_.tilt ? tilt(targets, frame) : focus(targets, frame);
@@ -92,7 +92,7 @@ class Pull {
  private:
   static constexpr std::size_t rays = 4096;  // blurs within 2 %
 
-  petzval::FocusCriterion criterion() const { return options_.focus.options().criterion; }
+  petzval::FocusCriterion criterion() const { return options_.focus.criterion; }
 
   void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
     const auto found = lens_.exact ? petzval::autofocus(*lens_.lens, targets, film_, criterion(), rays)
@@ -115,14 +115,14 @@ class Pull {
 
   /// Distance in focus on the axis, by rays for the real model; infinite if no finite distance is in focus.
   double distance() const {
-    if (lens_.exact) return petzval::solve_subject(*lens_.lens, film_.z(), options_.focus.options()).distance;
+    if (lens_.exact) return petzval::solve_subject(*lens_.lens, film_.z(), options_.focus).distance;
     const petzval::ScenePoint conjugate = lens_.ideal.scene_of({0, 0, film_.z()});
     const bool real = !conjugate.at_infinity && conjugate.position.z < lens_.ideal.front_focal_z;
     return real ? origin_z() - conjugate.position.z : infinity;
   }
   /// z of the origin of distances for an ideal lens, whose front vertex is at z = 0.
   double origin_z() const {
-    switch (options_.focus.distance_origin()) {
+    switch (options_.focus.origin) {
       case petzval::DistanceOrigin::film: return film_.z();
       case petzval::DistanceOrigin::entrance_pupil: return lens_.ideal.pupils.entrance.z;
       case petzval::DistanceOrigin::front_principal: return lens_.ideal.front_principal_z();
@@ -211,7 +211,7 @@ std::string plot(const Options& options, const examples::MovingLens& lens,
                              (points.size() == 1 ? " focus point, " : " focus points, ") +
                              number(options.frames_per_s) + " frames per second";
   return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()),
-                                    options.focus.from());
+                                    examples::in_words(options.focus.origin));
 }
 
 /// Table rows: one frame per second, and the last frame.
@@ -276,8 +276,8 @@ int commands::pull(int argc, char** argv) {
     examples::write_text(csv_file, to_csv(all));
     examples::write_text(svg_file, svg);
     std::vector<std::string> files{csv_file, svg_file};
-    const double at_infinity = lens.exact ? petzval::with_focus(*lens.lens, infinity, options.focus.options()).film_z()
-                                          : lens.ideal.rear_focal_z;
+    const double at_infinity =
+        lens.exact ? petzval::with_focus(*lens.lens, infinity, options.focus).film_z() : lens.ideal.rear_focal_z;
     const auto beyond = std::ranges::count_if(all, [&](const Frame& f) {
       constexpr double tolerance_mm = 1e-3;
       return std::isinf(f.distance_mm) && std::abs(f.film.z() - at_infinity) > tolerance_mm;
@@ -287,13 +287,13 @@ int commands::pull(int argc, char** argv) {
                 << " they are at infinity\n";
     }
     if (!options.tilt) {
-      examples::write_text(keys_file, to_keys(all, options.focus.origin));
+      examples::write_text(keys_file, to_keys(all, std::string(petzval::name(options.focus.origin))));
       files.push_back(keys_file);
     }
     if (options.json) {
       const Json json{{"lens", lens.title},
                       {"model", options.model_name()},
-                      {"distance_from", options.focus.origin},
+                      {"distance_from", petzval::name(options.focus.origin)},
                       {"frames", to_json(all)},
                       {"files", files}};
       std::cout << json.dump(1) << '\n';

@@ -24,6 +24,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "renderer/built_in_scenes.hpp"
@@ -58,24 +59,20 @@ constexpr std::uint32_t usual_width = 600;
 constexpr double noise_floor = 0.05;
 
 struct Options {
-  examples::LensInput lens_file;
-  std::string scene, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
-                     normalisation = "unity_on_axis", coatings, out_folder;
-  examples::CameraSetup setup;
-  examples::BokehFlags bokeh;
+  std::string scene, integrator = "bidirectional", wavelengths, coatings, out_folder;
+  examples::CameraFlags setup;
   examples::ExpressiveFlags expressive;
-  examples::FocalSurfaceSetup surface;
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
-  double budget_px = 0, seconds = 0, noise = 0, exposure = 1, tilt_deg = 0, swing_deg = 0;
-  bool resume = false;
+  double budget_px = 0, seconds = 0, noise = 0, exposure = 1;
+  bool choose_model = false, resume = false;
 };
 
 void say(const fs::path& file) { std::cout << file.string() << '\n'; }
 
-/// Writes picture.* and render.json. job: all inputs of the numbers; about: entries at the top of render.json.
-void write_results(const renderer::PictureSums& sums, const Json& job, Json about,
+/// Writes picture.*, render.json and tiles.json. job: all inputs of the numbers; about: entries of render.json.
+void write_results(const renderer::PictureSums& sums, Json job, const Json& about,
                    const std::vector<std::string>& formats, const fs::path& folder, double exposure = 1) {
   const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
                                                  {"lensModel", job.at("lens")},
@@ -101,10 +98,14 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
   if (sums.rejected() > 0) {
     std::cerr << "note: " << sums.rejected() << " contributions were rejected: not finite, or beyond 2^40\n";
   }
-  about.update(renderer::statistics(sums, noise_floor * number("white")));
-  about["job"] = job;
-  examples::write_text(folder / "render.json", about.dump(1) + '\n');
-  say(folder / "render.json");
+  Json report{{"setup", job.value("setup", Json())}},
+      numbers_of_sums = renderer::statistics(sums, noise_floor * number("white"));
+  examples::write_text(folder / "tiles.json", numbers_of_sums["tiles"].dump() + '\n');
+  numbers_of_sums.erase("tiles"), job.erase("setup");
+  report.update(about), report.update(numbers_of_sums);
+  report["job"] = std::move(job);
+  examples::write_text(folder / "render.json", report.dump(1) + '\n');
+  say(folder / "tiles.json"), say(folder / "render.json");
 }
 
 /// Irradiance on the axis of the film for a sky of radiance 1.
@@ -130,39 +131,47 @@ class Job {
       : options_(options),
         integrator_(*renderer::integrator_named(options.integrator)),
         colours_(colours_named(options.wavelengths)),
-        controls_(examples::controls_of(options.bokeh)),
         scene_(description(options)),
-        loaded_(examples::load_lens(options.lens_file, colours_.compiled_nm())),
-        lens_(examples::focused(loaded_, options.setup)) {
-    if (!options.coatings.empty()) lens_ = *examples::coated(lens_, options.coatings);
-    film_ = options.setup.film(options.width, options.height, usual_width);
-    film_.tilt_rad = petzval::radians(options.tilt_deg);
-    film_.swing_rad = petzval::radians(options.swing_deg);
+        loaded_(examples::load_lens(options.setup, colours_.compiled_nm())),
+        lens_(examples::focused(loaded_, options.setup)),
+        setup_(options.setup.used_with(loaded_.lens)) {
+    setup_.lens.wavelengths_nm.assign(colours_.compiled_nm().begin(), colours_.compiled_nm().end());
+    setup_.film = options.setup.sized_film(options.width, options.height, usual_width);
+    setup_.camera.threads = examples::threads();
+    setup_.camera.bokeh = examples::controls_of(options.setup);
+    if (!options.coatings.empty()) {
+      lens_ = *examples::coated(lens_, options.coatings);
+      setup_.coating.reset(), setup_.camera.transmission = true;
+      if (options.coatings != "file") setup_.coating = examples::coating_named(options.coatings);
+    } else if (setup_.coating) {
+      lens_ = petzval::with_coating(lens_, *setup_.coating);
+    }
     if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light source: the picture is black\n";
-    examples::say_what_does_not_fit(lens_, film_);
+    examples::say_what_does_not_fit(lens_, setup_.film);
     choose_model();
-    if (!options.surface.points_file.empty()) surface_ = surface();
+    if (!options.setup.points_file.empty()) read_points();
+    if (options.expressive.change_nothing()) return;
     if (options.expressive.dispersion != 1 && options.wavelengths == "d") {
       std::cerr << "note: --dispersion has an effect only with --wavelengths rgb or hero\n";
     }
-    expressive_ = examples::expressive_of(options.expressive, lens_, film_);
+    setup_.camera.expressive = examples::expressive_of(options.expressive, lens_, setup_.film);
   }
 
   /// @throws petzval::Error  if the lens cannot be focused
   static void check_focus(const Options& options) {
-    examples::focused(examples::load_lens(options.lens_file, colours_named(options.wavelengths).compiled_nm()),
+    examples::focused(examples::load_lens(options.setup, colours_named(options.wavelengths).compiled_nm()),
                       options.setup);
   }
 
   /// Renders and writes the results.
   void run() {
-    const renderer::LensCamera lens = camera(chosen_.model);
+    const renderer::LensCamera lens = camera(setup_);
     refuse_walls(lens);
     say_where_focus_is_steep(lens.camera());
     const fs::path folder = options_.out_folder;
     const fs::path file = renderer::checkpoint_file(folder, options_.shard);
     Json job = description_of_numbers(lens.camera());
-    renderer::PictureSums sums(film_.columns, film_.rows);
+    renderer::PictureSums sums(setup_.film.columns, setup_.film.rows);
     if (options_.resume && examples::exists(file)) {
       sums = resumed(file, job);
     } else if (options_.resume) {
@@ -207,6 +216,15 @@ class Job {
 
   petzval::ModelKind model() const noexcept { return chosen_.model; }
 
+  /// The --wavelengths of a lens that is compiled for wavelengths.
+  static std::string wavelengths_of(const std::vector<double>& nm) {
+    for (const char* const mode : {"d", "rgb"}) {
+      if (nm.empty() || std::ranges::is_permutation(colours_named(mode).compiled_nm(), nm)) return mode;
+    }
+    const bool one = nm.size() == 1 || (nm.size() == 2 && nm.back() == petzval::d_line_nm);
+    return one ? examples::number(nm.front()) : "hero";
+  }
+
  private:
   static renderer::PathColourSource colours_named(const std::string& text) {
     if (const auto mode = renderer::colour_mode_named(text)) return renderer::PathColourSource(*mode);
@@ -227,31 +245,20 @@ class Job {
     throw petzval::Error("--scene = \"" + options.scene + "\"; must be " + std::string(renderer::built_in_scene_names) +
                          " or a file that ends in .json (petzval blur and view have other scenes)");
   }
-  renderer::LensCamera camera(petzval::ModelKind model) const {
-    return {petzval::Camera(
-                lens_, film_,
-                {.model = model,
-                 .normalisation = options_.normalisation == "irradiance" ? petzval::Normalisation::irradiance
-                                                                         : petzval::Normalisation::unity_on_axis,
-                 .threads = examples::threads(),
-                 .bokeh = controls_,
-                 .focal_surface = surface_,
-                 .expressive = expressive_,
-                 .transmission = !options_.coatings.empty()}),
-            scene_.description().pose};
+  renderer::LensCamera camera(const petzval::CameraSetup& setup) const {
+    return {petzval::camera(setup, lens_), scene_.description().pose};
   }
-  /// The focal surface through the points of the file, projected by the model.
-  petzval::FocalSurface surface() const {
-    const renderer::LensCamera lens = camera(chosen_.model);
-    return examples::read_focal_surface(options_.surface, lens.camera(), options_.setup.focus.distance_origin(),
-                                        options_.setup.focus_mm,
-                                        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
-        .surface;
+  /// Reads the points of the focal surface, projected by the model.
+  void read_points() {
+    setup_.focal_points.clear();
+    const renderer::LensCamera lens = camera(setup_);
+    examples::read_focal_surface(options_.setup.points_file, setup_, lens.camera(),
+                                 [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); });
   }
   void say_where_focus_is_steep(const petzval::Camera& camera) const {
     const petzval::FocalSteepness found = camera.focal_steepness();
     if (found.steepness < 1 || integrator_ == renderer::Integrator::path) return;
-    const petzval::Vec2<double> pixel = film_.raster(found.film_point);
+    const petzval::Vec2<double> pixel = setup_.film.raster(found.film_point);
     std::cerr << "note: near pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
               << ") the focal surface is so steep that rays of several film points coincide; light paths count only "
                  "one of them: --integrator path includes all their light\n";
@@ -299,17 +306,21 @@ class Job {
   }
 
   void choose_model() {
-    const bool bent = !options_.surface.points_file.empty() || !options_.expressive.change_nothing();
-    if (bent && options_.model == "auto") {
+    if (!options_.choose_model) {
+      const std::string model(petzval::name(setup_.camera.model));
+      if (options_.budget_px > 0) throw petzval::Error("--budget with --model " + model + "; must be --model auto");
+      chosen_ = {setup_.camera.model, {"--model " + model}};
+      return;
+    }
+    chosen_ = chosen();
+    setup_.camera.model = chosen_.model;
+  }
+  renderer::ModelForScene chosen() const {
+    if (!options_.setup.points_file.empty() || !setup_.focal_points.empty() || !options_.expressive.change_nothing() ||
+        !setup_.camera.expressive.empty()) {
       throw petzval::Error(
           "--model auto: a focal surface or an expressive lens needs a first-order model by name: pinhole, thin, "
           "thin_two_disc or thick");
-    }
-    if (const auto named = petzval::model_named(options_.model)) {
-      if (options_.budget_px > 0)
-        throw petzval::Error("--budget with --model " + options_.model + "; must be --model auto");
-      chosen_ = {*named, {"--model " + options_.model}};
-      return;
     }
     // Errors near a limit may differ in their last digits between machines.
     if (options_.shard.count > 1) {
@@ -322,19 +333,22 @@ class Job {
       renderer::Checkpoint::read_any(file, job);
       const std::string before = job.value("model", "");
       if (const auto model = petzval::model_named(before)) {
-        chosen_ = {*model, {before + " was chosen at the start of the picture"}};
-        return;
+        return {*model, {before + " was chosen at the start of the picture"}};
       }
     }
     if (options_.budget_px == 0 && options_.samples == 0) {
       throw petzval::Error("--model auto with --time needs --budget or --spp for the choice");
     }
-    const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
+    petzval::CameraSetup setup = setup_;
+    setup.camera.model = petzval::ModelKind::exact_float;
+    const renderer::LensCamera exact = camera(setup);
     refuse_walls(exact);
-    chosen_ = options_.budget_px > 0 ? renderer::model_within(scene_, exact, options_.budget_px, examples::threads())
-                                     : renderer::model_below_noise(scene_, exact, colours_, integrator_,
-                                                                   options_.samples, examples::threads());
-    std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
+    renderer::ModelForScene found =
+        options_.budget_px > 0
+            ? renderer::model_within(scene_, exact, options_.budget_px, examples::threads())
+            : renderer::model_below_noise(scene_, exact, colours_, integrator_, options_.samples, examples::threads());
+    std::cerr << "note: model " << petzval::name(found.model) << '\n' << examples::bullets(found.why);
+    return found;
   }
   void refuse_walls(const renderer::LensCamera& lens) const {
     if (const renderer::Object* const wall = scene_.around(lens.front())) {
@@ -344,46 +358,46 @@ class Job {
   }
 
   Json description_of_numbers(const petzval::Camera& camera) const {
-    const examples::CameraSetup& setup = options_.setup;
     double white = 1;
-    if (options_.normalisation == "irradiance") white = irradiance_on_axis(camera);
+    if (setup_.camera.normalisation == petzval::Normalisation::irradiance) white = irradiance_on_axis(camera);
+    const petzval::BokehControls& bokeh = setup_.camera.bokeh;
     return {{"scene", renderer::checksum(scene_.description())},
             {"lens", lens_.name()},
             {"prescription", petzval::checksum(petzval::format_prescription(loaded_.prescription))},
             {"model", petzval::name(chosen_.model)},
             {"integrator", options_.integrator},
             {"wavelengths", options_.wavelengths == "visible" ? "hero" : options_.wavelengths},
-            {"normalisation", options_.normalisation},
+            {"normalisation", petzval::name(setup_.camera.normalisation)},
             {"coatings", options_.coatings},
             {"coating_file", options_.coatings.ends_with(".csv") ? file_checksum(options_.coatings) : ""},
             {"white", white},
-            {"width", film_.columns},
-            {"height", film_.rows},
-            {"film_mm", examples::number(film_.width_mm) + "x" + examples::number(film_.height_mm)},
-            {"tilt_deg", options_.tilt_deg},
-            {"swing_deg", options_.swing_deg},
-            {"focus_mm", examples::finite_or_null(setup.focus_mm)},
-            {"distance_from", setup.focus.origin},
-            {"criterion", setup.focus.criterion},
-            {"f_number", setup.iris.f_number},
+            {"width", setup_.film.columns},
+            {"height", setup_.film.rows},
+            {"film_mm", examples::number(setup_.film.width_mm) + "x" + examples::number(setup_.film.height_mm)},
+            {"tilt_deg", examples::exact_degrees(setup_.film.tilt_rad)},
+            {"swing_deg", examples::exact_degrees(setup_.film.swing_rad)},
+            {"focus_mm", examples::finite_or_null(*setup_.focus_mm)},
+            {"distance_from", petzval::name(setup_.focus.origin)},
+            {"criterion", petzval::name(setup_.focus.criterion)},
+            {"f_number", options_.setup.f_number.value_or(0)},
             {"real_f_number", petzval::real_f_number(lens_)},
             {"iris",
-             {{"blades", setup.iris.blades},
-              {"roundness", setup.iris.roundness},
-              {"rotation_deg", setup.iris.rotation_deg},
-              {"area", setup.iris.area},
-              {"image", file_checksum(options_.bokeh.iris_image)}}},
+             {{"blades", setup_.iris.blades},
+              {"roundness", setup_.iris.roundness},
+              {"rotation_deg", examples::exact_degrees(setup_.iris.rotation_rad)},
+              {"area", options_.setup.iris_area},
+              {"image", file_checksum(examples::iris_image(setup_))}}},
             {"bokeh",
-             {{"lens_ratio", controls_.lens_ratio},
-              {"rate_of_change", controls_.rate_of_change},
-              {"keep_light", controls_.keep_light},
-              {"weight_distribution", controls_.weight_distribution},
-              {"weight_strength", controls_.weight_strength},
-              {"weight_map", file_checksum(options_.bokeh.weight_map)}}},
+             {{"lens_ratio", bokeh.lens_ratio},
+              {"rate_of_change", bokeh.rate_of_change},
+              {"keep_light", bokeh.keep_light},
+              {"weight_distribution", bokeh.weight_distribution},
+              {"weight_strength", bokeh.weight_strength},
+              {"weight_map", file_checksum(examples::weight_map(setup_))}}},
             {"focal_surface",
-             {{"points", file_checksum(options_.surface.points_file)},
-              {"kind", options_.surface.kind},
-              {"beta", options_.surface.beta}}},
+             {{"points", file_checksum(options_.setup.points_file)},
+              {"kind", petzval::name(setup_.focal_surface.kind)},
+              {"beta", setup_.focal_surface.beta}}},
             {"expressive",
              {{"power_spline", options_.expressive.power_spline},
               {"curvature_points", options_.expressive.curvature_points},
@@ -393,26 +407,24 @@ class Job {
             {"sequence", "16 rounds of Owen-Sobol points"},
             {"noise", options_.noise > 0 ? Json(options_.noise) : Json()},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
-            {"petzval", PETZVAL_VERSION}};
+            {"petzval", PETZVAL_VERSION},
+            {"setup", Json::parse(petzval::to_json(setup_))}};
   }
 
   Options options_;
   renderer::Integrator integrator_;
   renderer::PathColourSource colours_;
-  petzval::BokehControls controls_;
   renderer::Scene scene_;
   examples::LoadedLens loaded_;
   petzval::Lens lens_;
-  petzval::Film film_;
+  petzval::CameraSetup setup_;  ///< of the picture
   renderer::ModelForScene chosen_;
-  std::optional<petzval::FocalSurface> surface_;
-  petzval::ExpressiveLens expressive_;
 };
 
 /// Renders one picture, or the frames of a focus pull.
 void render_frames(Options options) {
   const examples::FocusPull& pull = options.setup.pull;
-  const std::uint32_t count = pull.count(options.setup.focus.origin, options.surface.points_file);
+  const std::uint32_t count = pull.count(options.setup.focus.origin, options.setup.points_file);
   if (count > 1 && !pull.moves()) {
     throw petzval::Error("--frames = " + std::to_string(count) + ": must be used with --focus A:B or KEYS.json");
   }
@@ -430,7 +442,7 @@ void render_frames(Options options) {
     job.run();
     examples::end_if_asked();
     // Models of different frames must not differ.
-    options.model = petzval::name(job.model()), options.budget_px = 0;
+    options.setup.camera.model = job.model(), options.choose_model = false, options.budget_px = 0;
   }
 }
 
@@ -439,8 +451,8 @@ int merge(int argc, char** argv) {
   std::vector<std::string> folders, formats{"exr", "png"};
   std::string out_folder;
   examples::App app(
-      "Merges the shards of a picture, each rendered with --shard I/N, bit for bit as one run. Writes picture.* and "
-      "render.json to DIR.",
+      "Merges the shards of a picture, each rendered with --shard I/N, bit for bit as one run. Writes picture.*, "
+      "tiles.json and render.json to DIR.",
       "petzval render merge");
   app.add_option("FOLDER", folders, "folders with tile_I_of_N.exr")->required();
   examples::add_formats(app, formats, "png (sRGB)");
@@ -462,8 +474,9 @@ int commands::render(int argc, char** argv) {
   examples::App app(
       "Renders a scene through a lens. World: right-handed, y up, mm; the entrance pupil is at the position of the "
       "scene's camera. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the centre, or "
-      "irradiance with --normalisation irradiance) and render.json: model and reasons, samples, seconds, fraction of "
-      "the time spent in the lens, mean radiance and luminance of tiles with standard errors. For denoisers "
+      "irradiance with --normalisation irradiance) and render.json: the set-up of the camera for --setup, model and "
+      "reasons, samples, seconds, fraction of the time spent in the lens, mean radiance with standard errors; and "
+      "tiles.json: luminance and noise of tiles. For denoisers "
       "picture.exr also has albedo.R/G/B, "
       "normal.X/Y/Z (world) and depth.Z (mm along the axis from the front vertex) of the surfaces seen through the "
       "lens; "
@@ -472,21 +485,26 @@ int commands::render(int argc, char** argv) {
       "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
       "adds samples to a finished picture, bit for bit as one run.",
       "petzval render");
+  examples::add_setup(app, options.setup);
   app.add_option(
          "--scene", options.scene,
          "scene or file of a scene (.json); for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm). petzval blur "
          "and view have other scenes")
       ->required()
       ->type_name("NAME:{balls,chess,statues,street,table}");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   std::vector<std::string> models{"auto"};
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
   app.add_option(
-         "--model", options.model,
+         "--model",
+         [&](const std::string& text) {
+           options.choose_model = text == "auto";
+           options.setup.camera.model = petzval::model_named(text).value_or(petzval::ModelKind::exact_float);
+         },
          "model of the lens; auto: the fastest model within --budget, or by default the fastest model whose bias is "
          "below a tenth of the noise")
       ->one_of(models)
-      ->capture_default_str();
+      ->default_str("exact_float");
   examples::add_number(app, "--budget", options.budget_px, examples::positive_number,
                        "largest error of a ray for --model auto (pixels)")
       ->default_str("a tenth of the noise");
@@ -515,27 +533,30 @@ int commands::render(int argc, char** argv) {
   examples::add_threads(app);
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup, "each is written as with one --focus, to DIR/frame_0001 and so on");
-  examples::add_bokeh(app, options.bokeh);
-  auto* points = app.add_option("--points", options.surface.points_file,
+  examples::add_bokeh(app, options.setup);
+  auto* points = app.add_option("--points", options.setup.points_file,
                                 "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
                                 "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
                                 "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
                      ->type_name("POINTS.json");
-  examples::add_surface_kind(app, options.surface, points);
+  examples::add_surface_kind(app, options.setup.focal_surface, points);
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
-  examples::add_number(app, "--tilt", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
-  examples::add_number(app, "--swing", options.swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
+  examples::add_angle(app, "--tilt", options.setup.film.tilt_rad, below_quarter_turn,
+                      "tilt of the film about +x (degrees)");
+  examples::add_angle(app, "--swing", options.setup.film.swing_rad, below_quarter_turn,
+                      "swing of the film about +y (degrees)");
   app.add_option(
          "--wavelengths", options.wavelengths,
          "wavelengths of the light; d: the lens at the d line; rgb: one wavelength per channel; hero or visible: "
          "four wavelengths per path over the visible spectrum; NM: the lens at one wavelength (nm or a line like "
          "F), focused at the d line")
       ->type_name("d|rgb|hero|NM")
-      ->capture_default_str();
-  app.add_option("--normalisation", options.normalisation, "unit of the picture")
-      ->one_of({"unity_on_axis", "irradiance"})
-      ->capture_default_str();
+      ->default_str("d");
+  constexpr std::array units{petzval::Normalisation::unity_on_axis, petzval::Normalisation::irradiance};
+  options.setup.camera.normalisation = units.front();
+  examples::add_choice(app, "--normalisation", options.setup.camera.normalisation, units, "unit of the picture",
+                       examples::names(units));
   examples::add_coatings(app, options.coatings, "all light passes the lens");
   examples::add_number(app, "--exposure", options.exposure, examples::positive_number,
                        "brightness of picture.png: white is the radiance 1 / exposure in the centre");
@@ -550,6 +571,7 @@ int commands::render(int argc, char** argv) {
   examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
+    if (options.wavelengths.empty()) options.wavelengths = Job::wavelengths_of(options.setup.lens.wavelengths_nm);
     if (options.samples == 0 && options.noise > 0) options.samples = 4096;
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);

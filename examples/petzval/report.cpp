@@ -19,10 +19,10 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
-#include "support/iris_setup.hpp"
 #include "support/lens_light.hpp"
 #include "support/lens_page.hpp"
 #include "support/lens_report.hpp"
@@ -31,12 +31,13 @@
 namespace {
 
 struct Options {
-  examples::LensInput lens_file;
-  std::vector<double> wavelengths_nm;  // empty: of the file
+  petzval::LensSource lens_file;
+  std::optional<int> first_surface_number;  // nullopt: as the file counts
+  std::vector<double> wavelengths_nm;       // empty: of the file
   double subject_mm = 0;
   bool subject_given = false, json = false;
   double f_number = 0;  // 0: wide open
-  examples::FocusFlags focus;
+  petzval::FocusOptions focus;
   std::string film, out_folder;
   std::vector<double> field_deg;
   std::string coatings;  // empty: the coatings of the file
@@ -52,7 +53,7 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
   if (options.subject_given) {
     subject.distance_mm = options.subject_mm;
   } else {
-    subject.focus.origin = "front_vertex";
+    subject.focus.origin = petzval::DistanceOrigin::front_vertex;
     subject.distance_mm = design.object_distance_mm;
   }
   subject.film_of_file = options.film == "file" || (options.film.empty() && !options.subject_given);
@@ -71,12 +72,13 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
 petzval::Lens set(petzval::Lens lens, const Options& options, const examples::ReportSubject& subject) {
   if (options.f_number > 0) lens = examples::stopped_to(lens, options.f_number);
   return subject.film_of_file ? lens : examples::for_flag("--at", [&] {
-    return petzval::with_focus(lens, subject.distance_mm, subject.focus.options());
+    return petzval::with_focus(lens, subject.distance_mm, subject.focus);
   });
 }
 
 examples::Report report_of(const Options& options) {
   examples::LensFile file = examples::read_lens(options.lens_file);
+  file.first_surface_number = options.first_surface_number.value_or(file.first_surface_number);
   examples::ReportSubject subject = subject_of(file, options);
   const std::array primary{subject.light.primary_nm};
   examples::LoadedLens loaded = examples::compiled(std::move(file), primary);
@@ -153,8 +155,7 @@ int commands::report(int argc, char** argv) {
       "petzval report");
   examples::add_lens(app, options.lens_file);
   app.add_option(
-         "--surfaces-from",
-         [&options](const std::string& text) { options.lens_file.first_surface_number = text == "1" ? 1 : 0; },
+         "--surfaces-from", [&options](const std::string& text) { options.first_surface_number = text == "1" ? 1 : 0; },
          "number of the first surface in the report; patents count from 1")
       ->one_of({"0", "1"})
       ->default_str("1 for files of OpticStudio, CODE V, OSLO and tables, else 0");

@@ -14,10 +14,10 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/figure/lens_figures.hpp"
 #include "petzval/focus/focus.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
-#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -29,13 +29,13 @@ using examples::Json;
 constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
-  examples::LensInput lens_file;
+  petzval::LensSource lens_file;
   std::string out_folder, film = "focus";
   bool film_given = false;
   std::vector<double> field_deg, wavelengths_nm;  // empty: the fields and wavelengths of the file
   double subject_mm = 0, defocus_mm = 0, f_number = 0;
   bool subject_given = false;
-  examples::FocusFlags focus;
+  petzval::FocusOptions focus;
   std::uint32_t samples = 4096;
   examples::Output output;
 };
@@ -47,7 +47,7 @@ struct Setting {
   examples::ReportLight light;
   examples::ReportFields fields;
   double subject_mm = 0;
-  std::string origin;
+  petzval::DistanceOrigin origin{};
   bool film_of_file = false;
 };
 
@@ -62,16 +62,16 @@ Setting setting_of(const Options& options) {
   }
   const std::optional<double> primary = light.of_file ? std::optional(light.primary_nm) : std::nullopt;
   examples::LoadedLens loaded = examples::compiled(std::move(file), light.wavelengths_nm, primary);
-  examples::FocusFlags focus = options.focus;
+  petzval::FocusOptions focus = options.focus;
   double subject_mm = options.subject_mm;
   if (!options.subject_given) {
-    focus.origin = "front_vertex";
+    focus.origin = petzval::DistanceOrigin::front_vertex;
     subject_mm = loaded.prescription.design.object_distance_mm;
   }
   petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
   bool film_of_file = options.film == "file";
   if (!film_of_file) try {
-      lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
+      lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus); });
     } catch (const petzval::Error& error) {
       // Field lenses and eyepieces: the film of the file may lie on or before the last vertex.
       if (options.subject_given || options.film_given) throw;
@@ -86,8 +86,7 @@ Setting setting_of(const Options& options) {
 }
 
 std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std::uint32_t samples) {
-  const double subject_z =
-      petzval::origin_z(setting.lens, examples::named(setting.origin, examples::distance_origins)) - setting.subject_mm;
+  const double subject_z = petzval::origin_z(setting.lens, setting.origin) - setting.subject_mm;
   std::vector<double> fields;
   for (const double degrees : setting.fields.degrees) {
     fields.push_back(petzval::radians(degrees));
@@ -136,9 +135,9 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
                     {"rays_transmitted", spot.x.size()},
                     {"film_z_mm", setting.lens.film_z()},
                     {"film", setting.film_of_file ? "file" : "focus"},
-                    {"criterion", setting.film_of_file ? Json() : Json(options.focus.criterion)},
+                    {"criterion", setting.film_of_file ? Json() : Json(petzval::name(options.focus.criterion))},
                     {"subject_distance_mm", examples::finite_or_null(setting.subject_mm)},
-                    {"distance_from", setting.origin},
+                    {"distance_from", petzval::name(setting.origin)},
                     {"dispersion", petzval::name(setting.lens.dispersion())}});
   }
   return rows;

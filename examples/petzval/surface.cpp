@@ -40,28 +40,25 @@ using examples::number;
 constexpr std::uint32_t usual_width = 600;
 
 struct Options {
-  examples::LensInput lens_file;
   std::string queries_file, out_folder;
   std::uint32_t width = 0, height = 0;  // 0: not given
-  examples::CameraSetup setup;
-  examples::FocalSurfaceSetup surface;
+  examples::CameraFlags setup;
 };
 
 /// The surface through the points, with distances from the origin of the options.
 class Surface {
  public:
-  explicit Surface(const Options& options)
-      : loaded_(examples::load_lens(options.lens_file, std::array{petzval::d_line_nm})),
+  explicit Surface(Options options)
+      : loaded_(examples::load_lens(options.setup.lens, std::array{petzval::d_line_nm})),
         lens_(examples::focused(loaded_, options.setup)) {
-    const petzval::Film film = options.setup.film(options.width, options.height, usual_width);
+    const petzval::Film film = options.setup.sized_film(options.width, options.height, usual_width);
     const petzval::Camera camera(lens_, film, {.model = petzval::ModelKind::thick});
-    const petzval::DistanceOrigin origin = options.setup.focus.distance_origin();
+    const petzval::DistanceOrigin origin = options.setup.focus.origin;
     film_ = camera.film();
     ideal_ = petzval::thick_lens(camera.lens());
-    auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin, options.setup.focus_mm,
-                                                          [](const petzval::Vec3<double>& point) { return point; });
-    points_ = std::move(points);
-    surface_.emplace(std::move(surface));
+    surface_ = examples::read_focal_surface(options.setup.points_file, options.setup, camera,
+                                            [](const petzval::Vec3<double>& point) { return point; });
+    points_ = options.setup.focal_points;
     beyond_pupil_ = petzval::origin_z(camera.lens(), origin) - surface_->origin_z();
   }
 
@@ -140,7 +137,8 @@ std::string map_of(const Surface& surface, const Options& options) {
   sheet.title = "Focal surface";
   sheet.subtitle = surface.lens().name() + " at f/" + number(petzval::real_f_number(surface.lens()), 3) + ", " +
                    std::to_string(surface.points().size()) + (surface.points().size() == 1 ? " point, " : " points, ") +
-                   options.surface.kind + ", beta " + number(options.surface.beta);
+                   std::string(name(options.setup.focal_surface.kind)) + ", beta " +
+                   number(options.setup.focal_surface.beta);
   sheet.width = film.columns, sheet.height = film.rows;
   const Surface::Frame frame = surface.frame(film);
   const auto add = [&](std::string title, std::vector<double> values, auto levels_of, auto in_words, const char* low,
@@ -164,13 +162,13 @@ std::string map_of(const Surface& surface, const Options& options) {
       if (point.*fixed) map.points.push_back({at.x, at.y, i + 1});
     }
   };
-  add("Distance in focus from the " + options.setup.focus.from() + ", on a scale of 1/distance", frame.inverses,
-      distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
+  add("Distance in focus from the " + examples::in_words(options.setup.focus.origin) + ", on a scale of 1/distance",
+      frame.inverses, distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
     add("Extent of the depth of field, in stops: deeper above 0, shallower below 0", frame.extents, stop_levels,
         stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
-  const std::string points_file = std::filesystem::path(options.surface.points_file).filename().string();
+  const std::string points_file = std::filesystem::path(options.setup.points_file).filename().string();
   sheet.notes = {"Points have their numbers in " + points_file + "; the picture is upright."};
   return examples::draw_map_sheet(sheet);
 }
@@ -229,10 +227,10 @@ int commands::surface(int argc, char** argv) {
       "is the signed diameter of the requested blur for an object at the distance of the points, negative in front of "
       "the focus. Points that fix a distance override --focus.",
       "petzval surface");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   auto* points =
       app.add_option(
-             "--points", options.surface.points_file,
+             "--points", options.setup.points_file,
              "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "
              "\"blur_px\", \"weight\", \"fade\"}]}; pixels from the upper left corner, centres at halves; the world "
              "is the lens frame, with the scene at negative z; distance_mm null: infinity")
@@ -240,7 +238,7 @@ int commands::surface(int argc, char** argv) {
           ->type_name("POINTS.json");
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
-  examples::add_surface_kind(app, options.surface, points);
+  examples::add_surface_kind(app, options.setup.focal_surface, points);
   app.add_option("--table", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);

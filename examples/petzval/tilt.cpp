@@ -136,7 +136,7 @@ Result solve(const Options& options) {
   for (const auto& target : examples::read_targets(options.points_file)) result.points.push_back({target});
 
   result.before = focused(options, result);
-  if (options.film_given) {
+  if (options.setup.film_given) {
     leave_out_targets_off_film(petzval::Film(result.before.film), result);
     result.before = focused(options, result);
   }
@@ -144,7 +144,8 @@ Result solve(const Options& options) {
                             .robust = options.robust,
                             .film = result.before.film,
                             .rays = rays_to_fit};
-  if (!options.film_given) tilt.film.width_mm = tilt.film.height_mm = 0;  // only its centre must stay behind the lens
+  if (!options.setup.film_given)
+    tilt.film.width_mm = tilt.film.height_mm = 0;  // only its centre must stay behind the lens
   const auto served = targets(result.points);
   result.after = result.lens.exact ? petzval::fit_tilt(*result.lens.lens, served, tilt)
                                    : petzval::fit_tilt(result.lens.ideal, served, tilt);

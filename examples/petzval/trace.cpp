@@ -80,7 +80,7 @@ std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const pe
 }  // namespace
 
 int commands::trace(int argc, char** argv) {
-  examples::LensInput lens_file;
+  petzval::LensSource lens_file;
   std::string rays_file, out_file, precision = "double", travel = "to_film";
   double wavelength_nm = petzval::d_line_nm;
   bool ignore_apertures = false;

@@ -21,7 +21,7 @@ int commands::view(int argc, char** argv) {
   viewer::WindowOptions window;
   viewer::ReplayOptions replay;
   lens_blur::InputFlags& input = window.session.input;
-  examples::LensInput lens;
+  petzval::LensSource lens;
   double thin_mm = 0, f_number = 0;
   examples::App app(
       "Lens blur in a window: click into the picture to focus. --replay computes the same without a window from a log "

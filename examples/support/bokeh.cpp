@@ -40,7 +40,7 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     const double focal_length =
         std::abs(petzval::first_order(lens, {}, petzval::main_meridian(lens)).effective_focal_length);
     if (setup.light_mm < 0.2 * focal_length) {
-      note("a light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
+      note("a light " + number(setup.light_mm) + " mm from the " + in_words(setup.focus.origin) +
            "; lengths are in mm: " + number(setup.light_mm) + " m = " + number(1000 * setup.light_mm) + " mm");
     }
     return;
@@ -52,8 +52,9 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     const double middle = (in_front_mm + behind_mm) / 2;
     (in_front(lens, origin_z - middle) ? in_front_mm : behind_mm) = middle;
   }
-  throw petzval::Error(lens.name() + ": light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
-                       "; must be in front of the lens, more than " + number(in_front_mm, 6) + " mm away");
+  throw petzval::Error(lens.name() + ": light " + number(setup.light_mm) + " mm from the " +
+                       in_words(setup.focus.origin) + "; must be in front of the lens, more than " +
+                       number(in_front_mm, 6) + " mm away");
 }
 
 /// A light at a field of 90 degrees or more, at a distance along its ray from the entrance pupil.
@@ -75,13 +76,11 @@ petzval::FieldPoint light_beside(const petzval::Lens& lens, const BokehSetup& se
 }  // namespace
 
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup) {
-  const petzval::Lens focused = for_flag("--focus", [&] {
-    return petzval::with_focus(lens, focus_mm, {setup.criterion, setup.origin});
-  });
+  const petzval::Lens focused = for_flag("--focus", [&] { return petzval::with_focus(lens, focus_mm, setup.focus); });
   if (std::isfinite(setup.light_mm) && std::abs(setup.field_rad) >= right_angle) {
     return {focused, light_beside(focused, setup)};
   }
-  const double from_z = origin_z(focused, setup.origin);
+  const double from_z = origin_z(focused, setup.focus.origin);
   check_light(lens, setup, from_z);
   return {focused, {setup.field_rad, from_z - setup.light_mm}};
 }

@@ -24,11 +24,10 @@ inline constexpr const char* picture_frame =
 
 /// A point light and how the lens is focused.
 struct BokehSetup {
-  /// Distance of the light from `origin`, mm; may be infinite. At fields of 90 degrees and more, along the ray from the
-  /// entrance pupil.
+  /// Distance of the light from focus.origin, mm; may be infinite. At fields of 90 degrees and more, along the ray from
+  /// the entrance pupil.
   double light_mm = 1000;
-  petzval::DistanceOrigin origin = petzval::DistanceOrigin::front_vertex;
-  petzval::FocusCriterion criterion = petzval::FocusCriterion::min_rms;
+  petzval::FocusOptions focus = {};
   double field_rad = 0;
 };
 

@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include "cli.hpp"
-#include "petzval/camera/bokeh.hpp"
+#include "petzval/io/camera_setup.hpp"
 
 namespace examples {
 
-/// Options for iris images, cat's eyes and weights of the pupil, shared by several programs.
-struct BokehFlags {
-  petzval::BokehControls controls;  ///< without a weight map
-  std::string iris_image, weight_map;
-
-  /// True if the flags leave the bokeh of the lens unchanged.
-  bool change_nothing() const noexcept;
-};
-
 /// Adds --iris-image, --lens-ratio, --rate-of-change, --keep-light, --weight-distribution, --weight-strength and
-/// --weight-map.
-void add_bokeh(App& app, BokehFlags& flags);
+/// --weight-map, for iris_map and camera.bokeh. The weights of --weight-map, unlike --iris-image, are divided by their
+/// mean.
+void add_bokeh(App& app, petzval::CameraSetup& setup);
+
+/// The file of --iris-image or --weight-map; empty if it is not given.
+std::string iris_image(const petzval::CameraSetup& setup);
+std::string weight_map(const petzval::CameraSetup& setup);
+
+/// True if the set-up leaves the bokeh of the lens unchanged.
+bool plain_bokeh(const petzval::CameraSetup& setup) noexcept;
 
 /// The controls with their map. A note on standard error gives the light added by setting negative weights to 0.
-/// @throws petzval::Error if a file cannot be read, both maps are given, or a flag has no effect
-petzval::BokehControls controls_of(const BokehFlags& flags);
+/// @throws petzval::Error if the file cannot be read or a flag has no effect
+petzval::BokehControls controls_of(const petzval::CameraSetup& setup);
 
 }  // namespace examples

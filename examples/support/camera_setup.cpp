@@ -6,20 +6,23 @@
 #include <utility>
 
 #include "cli.hpp"
+#include "files.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lint.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
 namespace examples {
 
-std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film", film_mm, film_side); }
-
-petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
+petzval::Film CameraFlags::sized_film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
   constexpr double max_side_px = 16384;
-  auto [width, height] = film_size();
+  petzval::Film result = film;
+  if (!file.empty() && columns == 0 && rows == 0) return result;
   double across = columns, down = rows;
+  double &width = result.width_mm, &height = result.height_mm;
   if (!film_given && across > 0 && down > 0) {
     if (down > across) std::swap(width, height);
     (across * height > down * width) ? height = width* down / across : width = height * across / down;
@@ -28,31 +31,81 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
   if (across == 0) across = std::max(1.0, std::round(down * width / height));
   if (down == 0) down = std::max(1.0, std::round(across * height / width));
   if ((columns == 0 || rows == 0) && std::max(across, down) > max_side_px) {
-    throw petzval::Error("--film = " + film_mm + ": a picture of " + number(across) + " x " + number(down) +
-                         " pixels; must have at most " + number(max_side_px) + " along each side");
+    throw petzval::Error("--film = " + number(width) + 'x' + number(height) + ": a picture of " + number(across) +
+                         " x " + number(down) + " pixels; must have at most " + number(max_side_px) +
+                         " along each side");
   }
-  return {.width_mm = width, .height_mm = height, .columns = static_cast<int>(across), .rows = static_cast<int>(down)};
+  result.columns = static_cast<int>(across), result.rows = static_cast<int>(down);
+  return result;
 }
 
-void add_camera(App& app, CameraSetup& setup, const std::string& frames_help) {
-  add_iris(app, setup.iris);
+void add_setup(App& app, CameraFlags& flags) {
+  app.add_option(
+         "--setup",
+         [&app, &flags](const std::string& file) {
+           static_cast<petzval::CameraSetup&>(flags) =
+               for_flag("--setup", [&] { return petzval::camera_setup(read_text(file, largest_json), file); });
+           flags.file = file, flags.film_given = true;
+           // Kept for command lines without another lens.
+           flags.lens_of_file = std::exchange(flags.lens, {.wavelengths_nm = flags.lens.wavelengths_nm});
+           for (const char* replaced : {"LENS", "--focus"}) app.get_option(replaced)->required(false);
+         },
+         "set-up of the camera instead of LENS and flags; a report of render, blur or psf, or a file with its setup. "
+         "LENS "
+         "and the flags that are given replace single values")
+      ->type_name("REPORT.json");
+  app.add_check([&app, &flags] {
+    if (flags.file.empty()) return;
+    if (!app.get_option("LENS")->given() && flags.lens.thin_mm == 0) flags.lens = flags.lens_of_file;
+    if (flags.focus_mm || flags.pull.moves()) return;
+    throw petzval::Error("--setup = " + flags.file + ": focus_mm is missing; must be in the file or given by --focus");
+  });
+}
+
+void add_camera(App& app, CameraFlags& flags, const std::string& frames_help) {
+  add_iris(app, flags);
   if (frames_help.empty()) {
-    add_length(app, "--focus", setup.focus_mm, positive_length,
+    add_length(app, "--focus", *flags.focus_mm, positive_length,
                "distance of the subject in focus (mm), or inf; at the primary wavelength: the one nearest to the d "
                "line, unless the lens states a reference");
   } else {
-    add_focus_pull(app, setup.pull, setup.focus_mm, frames_help);
+    add_focus_pull(app, flags.pull, flags.focus_mm, frames_help);
   }
-  add_focus(app, setup.focus);
+  add_focus(app, flags.focus);
+  add_film(app, flags);
+}
+
+void add_film(App& app, CameraFlags& flags, const std::string& help) {
   app.add_option(
          "--film",
-         [&setup](const std::string& text) {
-           setup.film_mm = text;
-           setup.film_given = true;
+         [&flags](const std::string& text) {
+           const auto [width, height] = parse_size("--film", text, film_side);
+           flags.film.width_mm = width, flags.film.height_mm = height;
+           flags.film_given = true;
          },
-         "width and height of the film (mm)")
+         help)
       ->type_name("WxH")
-      ->default_str(setup.film_mm);
+      ->default_str(number(flags.film.width_mm) + 'x' + number(flags.film.height_mm));
+}
+
+void add_iris(App& app, CameraFlags& flags) {
+  add_number(app, "--f-number", flags.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
+      ->default_str("wide open");
+  add_iris_shape(app, flags);
+}
+
+void add_iris_shape(App& app, CameraFlags& flags) {
+  constexpr Range blades{0, 20, "3 to 20, or 0 for a round iris"};
+  add_count(app, "--blades", flags.iris.blades, blades, "blades of the iris, 3 to 20; 0: round");
+  add_number(app, "--roundness", flags.iris.roundness, {-1, 1, "a number from -1 to 1"},
+             "edges of the blades; 0: straight; 1: round; below 0: hollow");
+  add_angle(app, "--iris-rotation", flags.iris.rotation_rad, finite_number,
+            "rotation of the first corner from straight up (degrees); anticlockwise seen from behind the camera");
+  app.add_option("--iris-area", flags.iris_area,
+                 "meaning of the f-number with blades. circumscribed: their corners lie on the round iris; equal: they "
+                 "pass as much light as the round iris")
+      ->one_of({"circumscribed", "equal"})
+      ->capture_default_str();
 }
 
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width) {
@@ -75,10 +128,14 @@ void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std
       ->default_str(std::to_string(usual_width) + " across, square pixels");
 }
 
-Option* add_model(App& app, std::string& model) {
+Option* add_model(App& app, petzval::ModelKind& model) {
   std::vector<std::string> names;
   for (const petzval::ModelKind m : petzval::models()) names.emplace_back(petzval::name(m));
-  return app.add_option("--model", model, "model of the lens")->one_of(names);
+  return app
+      .add_option(
+          "--model", [&model](const std::string& text) { model = *petzval::model_named(text); }, "model of the lens")
+      ->one_of(names)
+      ->default_str(std::string(petzval::name(model)));
 }
 
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range) {
@@ -90,9 +147,61 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
   return {parse(where, text.substr(0, x), range), parse(where, text.substr(x + 1), range)};
 }
 
-petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
-  const petzval::Lens lens = stopped_down(loaded.lens, setup.iris);
-  return for_flag("--focus", [&] { return petzval::with_focus(lens, setup.focus_mm, setup.focus.options()); });
+namespace {
+
+/// The given f-number; if it is faster than the lens by at most 4 %, the f-number of the lens wide open.
+double reachable(const petzval::Lens& lens, double f_number) {
+  // Lens names are rounded: an "f/1.8" lens may open only to f/1.85.
+  constexpr double name_tolerance = 1.04, rounding_tolerance = 1.005;
+  const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
+  if (!(f_number < fastest && fastest <= name_tolerance * f_number)) return f_number;
+  if (fastest > rounding_tolerance * f_number) {
+    note(lens.name() + ": --f-number = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
+         ", which is used");
+  }
+  return fastest;
+}
+
+/// The f-number of the circle through the corners of the blades.
+double corner_f_number(const CameraFlags& flags) {
+  return flags.iris_area == "equal" ? petzval::equal_area_f_number(flags.iris, *flags.f_number) : *flags.f_number;
+}
+
+}  // namespace
+
+petzval::CameraSetup CameraFlags::used_with(const petzval::Lens& compiled) const {
+  petzval::CameraSetup result = *this;
+  if (f_number && lens.thin_mm == 0) {
+    result.f_number = reachable(petzval::with_iris(compiled, iris), corner_f_number(*this));
+  }
+  return result;
+}
+
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number) {
+  return for_flag("--f-number", [&] { return petzval::with_f_number(lens, reachable(lens, f_number)); });
+}
+
+petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags) {
+  const petzval::Iris& iris = flags.iris;
+  if (iris.blades == 0) {
+    const auto refuse = [](const std::string& found, const std::string& why) {
+      throw petzval::Error(found + " needs --blades: a round iris has " + why);
+    };
+    if (iris.roundness != 0) refuse("--roundness", "no edges");
+    if (iris.rotation_rad != 0) refuse("--iris-rotation", "no corners");
+    if (flags.iris_area == "equal") refuse("--iris-area = equal", "only one area");
+  }
+  const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, iris); });
+  if (flags.f_number && flags.lens.thin_mm == 0) return stopped_to(shaped, corner_f_number(flags));
+  if (flags.iris_area == "equal" && !iris.round() && !flags.f_number) {
+    throw petzval::Error("--iris-area = equal needs --f-number: wide open, blades cannot open further");
+  }
+  return shaped;
+}
+
+petzval::Lens focused(const LoadedLens& loaded, const CameraFlags& flags) {
+  const petzval::Lens lens = stopped_down(loaded.lens, flags);
+  return for_flag("--focus", [&] { return petzval::with_focus(lens, *flags.focus_mm, flags.focus); });
 }
 
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, const std::string& pixel_flags) {

@@ -8,9 +8,9 @@
 
 #include "cli.hpp"
 #include "focus_pull.hpp"
-#include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace examples {
@@ -18,44 +18,63 @@ namespace examples {
 /// Width or height of a film, mm.
 inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a length above 0, at most 1e6 mm"};
 
-/// Command line of the programs with a camera.
-struct CameraSetup {
-  IrisSetup iris;
-  double focus_mm = 3000;  ///< distance of the subject in focus, mm
-  FocusPull pull;          ///< a focus that moves; focus_mm is then its first distance
-  FocusFlags focus;        ///< origin and criterion of focus_mm
-  std::string film_mm = "36x24";
-  bool film_given = false;
+/// The set-up of a camera as the flags of a command line state it.
+struct CameraFlags : petzval::CameraSetup {
+  FocusPull pull = {};                      ///< a focus that moves; focus_mm is then its first distance
+  std::string iris_area = "circumscribed";  ///< meaning of f_number: "equal": of a round iris of the same area
+  std::string points_file = {};             ///< points of the focal surface, used instead of focal_points
+  bool film_given = false;                  ///< the film has the size of --film or --setup
+  std::string file = {};                    ///< of --setup
+  petzval::LensSource lens_of_file = {};    ///< the lens of --setup
 
-  /// Width and height of the film. Throws petzval::Error.
-  std::array<double, 2> film_size() const;
+  CameraFlags() { focus_mm = 3000; }
 
-  /// A film with the given numbers of pixels; 0: not given.
+  /// The film with the given numbers of pixels; 0: not given. Without both the pixels of --setup are used.
   ///
   /// Without --film the film is the largest with the shape of the picture within 36 x 24 mm, or within 24 x 36 mm
   /// for a picture in portrait format. A missing number of pixels follows from the film and square pixels.
   ///
   /// @param usual_columns  columns if neither number is given
-  /// @throws petzval::Error if --film is invalid, or so narrow that the picture would need more than 16384 pixels
-  petzval::Film film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
+  /// @throws petzval::Error if --film is so narrow that the picture would need more than 16384 pixels
+  petzval::Film sized_film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
+  /// The set-up for a report, with the f-number of stopped_down().
+  petzval::CameraSetup used_with(const petzval::Lens& compiled) const;
 };
+
+/// Adds --setup: a set-up, or a report with one, that replaces LENS and the values of all flags that are not given.
+/// Must be added before these flags, because options are applied in the order of their addition.
+void add_setup(App& app, CameraFlags& flags);
 
 /// Adds the options of add_iris, --focus, --from, --criterion and --film.
 /// @param frames_help  if not empty, adds the options of add_focus_pull()
-void add_camera(App& app, CameraSetup& setup, const std::string& frames_help = "");
+void add_camera(App& app, CameraFlags& flags, const std::string& frames_help = "");
 
-/// Adds --size, 0 if not given, for CameraSetup::film.
+/// Adds --film. @param help  meaning of the size
+void add_film(App& app, CameraFlags& flags, const std::string& help = "width and height of the film (mm)");
+
+/// Adds --blades, --roundness, --iris-rotation and --iris-area.
+void add_iris_shape(App& app, CameraFlags& flags);
+/// Adds the options of add_iris_shape() and --f-number.
+void add_iris(App& app, CameraFlags& flags);
+
+/// Adds --size, 0 if not given, for CameraFlags::sized_film.
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);
 
 /// Adds --model.
-Option* add_model(App& app, std::string& model);
+Option* add_model(App& app, petzval::ModelKind& model);
 
 /// Parses a size like "36x24"; parts of --film may have units. @throws petzval::Error that begins with `where`, if the
 /// text is not a size
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
+/// Applies petzval::with_f_number for the f-number of a command line. Lens names are rounded: if the f-number is faster
+/// than the lens by at most 4 %, the lens opens fully and a note on standard error gives the true f-number.
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number);
+/// The lens with the iris, stopped down unless it is a thin lens of the flags.
+/// @throws petzval::Error if the lens cannot have the iris or the f-number
+petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags);
 /// The loaded lens, stopped down and focused at its primary wavelength.
-petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
+petzval::Lens focused(const LoadedLens& loaded, const CameraFlags& flags);
 
 /// Prints the findings of petzval::lint() about a film as notes on standard error.
 ///

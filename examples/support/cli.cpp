@@ -24,6 +24,7 @@
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/glass/glass.hpp"
 #include "suggest.hpp"
@@ -59,7 +60,7 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-Option* Option::required() { return option_->required(), this; }
+Option* Option::required(bool value) { return option_->required(value), this; }
 Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
 Option* Option::default_str(const std::string& text) { return option_->default_str(text), this; }
 Option* Option::capture_default_str() { return option_->capture_default_str(), this; }
@@ -264,6 +265,26 @@ Option* add_number(App& app, const std::string& flag, double& value, const Range
                     [=](const std::string& text) { return parse_number(flag, text, range); });
 }
 
+Option* add_number(App& app, const std::string& flag, std::optional<double>& value, const Range& range,
+                   const std::string& help) {
+  return add_parsed(app, flag, value, "NUMBER", "", help,
+                    [=](const std::string& text) { return parse_number(flag, text, range); });
+}
+
+Option* add_angle(App& app, const std::string& flag, double& radians, const Range& range, const std::string& help) {
+  return add_parsed(app, flag, radians, "NUMBER", number(exact_degrees(radians)), help,
+                    [=](const std::string& text) { return petzval::radians(parse_number(flag, text, range)); });
+}
+
+double exact_degrees(double radians) {
+  const double near = petzval::degrees(radians);
+  const double rounded = std::round(1e9 * near) / 1e9;  // the angle of most command lines
+  for (const double candidate : {rounded, near, std::nextafter(near, -1e9), std::nextafter(near, 1e9)}) {
+    if (petzval::radians(candidate) == radians) return candidate;
+  }
+  return near;
+}
+
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help) {
   return add_parsed(app, flag, values, "NUMBER,...", joined(values), help,
@@ -347,17 +368,14 @@ std::string in_words(petzval::DistanceOrigin origin) {
   return origin == petzval::DistanceOrigin::front_principal ? words + " plane" : words;
 }
 
-std::string FocusFlags::from() const { return in_words(distance_origin()); }
-
-Option* add_distance_origin(App& app, std::string& origin) {
-  return app.add_option("--from", origin, "origin of all distances; they are positive towards the scene")
-      ->one_of(names(distance_origins))
-      ->capture_default_str();
+Option* add_distance_origin(App& app, petzval::DistanceOrigin& origin) {
+  return add_choice(app, "--from", origin, distance_origins,
+                    "origin of all distances; they are positive towards the scene", names(distance_origins));
 }
 
-void add_focus(App& app, FocusFlags& flags) {
-  add_distance_origin(app, flags.origin);
-  add_criterion(app, flags.criterion);
+void add_focus(App& app, petzval::FocusOptions& focus) {
+  add_distance_origin(app, focus.origin);
+  add_criterion(app, focus.criterion);
 }
 
 Option* add_film_choice(App& app, std::string& film, const std::string& default_words) {
@@ -381,8 +399,8 @@ constexpr const char* criterion_help =
 
 }  // namespace
 
-Option* add_criterion(App& app, std::string& criterion, const std::vector<std::string>& allowed) {
-  return app.add_option("--criterion", criterion, criterion_help)->one_of(allowed)->capture_default_str();
+Option* add_criterion(App& app, petzval::FocusCriterion& criterion, const std::vector<std::string>& allowed) {
+  return add_choice(app, "--criterion", criterion, focus_criteria, criterion_help, allowed);
 }
 
 Option* add_criteria(App& app, std::vector<std::string>& criteria) {
@@ -392,19 +410,25 @@ Option* add_criteria(App& app, std::vector<std::string>& criteria) {
       ->capture_default_str();
 }
 
+namespace {
+
+template <class Count>
+Option* add_whole(App& app, const std::string& flag, Count& value, const Range& range, const std::string& help) {
+  return add_parsed(app, flag, value, "N", std::to_string(value), help, [=](const std::string& text) {
+    const double number = parse_number(flag, text, range);
+    if (number != std::floor(number)) throw petzval::Error(flag + " = \"" + text + "\"; must be " + range.words);
+    return static_cast<Count>(number);
+  });
+}
+
+}  // namespace
+
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range,
                   const std::string& help) {
-  return app
-      .add_option(
-          flag,
-          [&value, flag, range](const std::string& text) {
-            const double number = parse_number(flag, text, range);
-            value = static_cast<std::uint32_t>(number);
-            if (value != number) throw petzval::Error(flag + " = \"" + text + "\"; must be " + range.words);
-          },
-          help)
-      ->type_name("N")
-      ->default_str(std::to_string(value));
+  return add_whole(app, flag, value, range, help);
+}
+Option* add_count(App& app, const std::string& flag, int& value, const Range& range, const std::string& help) {
+  return add_whole(app, flag, value, range, help);
 }
 
 Option* add_samples(App& app, std::uint32_t& samples) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,7 +58,7 @@ std::vector<double> parse_wavelengths(const std::string& where, std::string_view
 /// compile.
 class Option {
  public:
-  Option* required();
+  Option* required(bool value = true);
   Option* type_name(const std::string& name);
   Option* default_str(const std::string& text);
   Option* capture_default_str();
@@ -115,8 +116,15 @@ auto for_flag(const std::string& flag, const Work& work) {
 
 /// Add options read by the functions above. --help shows the value of the variable as the default.
 Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
+Option* add_number(App& app, const std::string& flag, std::optional<double>& value, const Range& range,
+                   const std::string& help);
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help);
+
+/// Adds an angle in degrees for a value in radians.
+Option* add_angle(App& app, const std::string& flag, double& radians, const Range& range, const std::string& help);
+/// The degrees of an angle that give the same double in radians.
+double exact_degrees(double radians);
 
 /// Add lengths in mm, with or without a unit.
 Option* add_length(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
@@ -150,6 +158,7 @@ CommandText described(int (*command)(int, char**), std::string name);
 
 /// Adds a whole number. The ends of the range are whole numbers of at least 0.
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
+Option* add_count(App& app, const std::string& flag, int& value, const Range& range, const std::string& help);
 
 /// The focus criteria and the origins of distances.
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
@@ -171,30 +180,28 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return name(e) == text; });
 }
 
-/// --from and --criterion, with the same meaning and the same defaults in every program.
-struct FocusFlags {
-  std::string origin = "front_vertex";
-  std::string criterion = "min_rms";
-
-  petzval::DistanceOrigin distance_origin() const { return named(origin, distance_origins); }
-  petzval::FocusOptions options() const {
-    return {.criterion = named(criterion, focus_criteria), .origin = distance_origin()};
-  }
-  /// The origin in words: "front vertex", "film", ...
-  std::string from() const;
-};
+/// Adds an option for an enumerator by its name, which must be in `allowed`.
+template <class Enum, std::size_t count>
+Option* add_choice(App& app, const std::string& flag, Enum& value, const std::array<Enum, count>& all,
+                   const std::string& help, const std::vector<std::string>& allowed) {
+  return app
+      .add_option(
+          flag, [&value, all](const std::string& text) { value = named(text, all); }, help)
+      ->one_of(allowed)
+      ->default_str(std::string(name(value)));
+}
 
 /// Adds --from, for all distances of a program.
-Option* add_distance_origin(App& app, std::string& origin);
+Option* add_distance_origin(App& app, petzval::DistanceOrigin& origin);
 
 /// Adds --criterion: the meaning of "in focus", by one name or by several names separated by commas. --help shows the
 /// value of the variable as the default.
-Option* add_criterion(App& app, std::string& criterion,
+Option* add_criterion(App& app, petzval::FocusCriterion& criterion,
                       const std::vector<std::string>& allowed = names(focus_criteria));
 Option* add_criteria(App& app, std::vector<std::string>& criteria);
 
 /// Adds --from and --criterion.
-void add_focus(App& app, FocusFlags& flags);
+void add_focus(App& app, petzval::FocusOptions& focus);
 
 /// Adds --film: "file" for the film position of the lens file, "focus" for the position that focuses the subject.
 /// default_words: the default in words.
@@ -202,6 +209,7 @@ Option* add_film_choice(App& app, std::string& film, const std::string& default_
 
 /// "front vertex", "film", "entrance pupil" or "front principal plane".
 std::string in_words(petzval::DistanceOrigin origin);
+inline std::string in_words(petzval::FocusCriterion criterion) { return std::string(name(criterion)); }
 
 /// Prints "note: TEXT" on standard error, each text once.
 void note(const std::string& text);

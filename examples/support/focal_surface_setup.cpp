@@ -82,35 +82,32 @@ std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& 
 
 }  // namespace
 
-void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points) {
-  app.add_option("--kind", setup.kind,
-                 "interpolation of distances between points: affine (by planes, which are reproduced) or shepard "
-                 "(weighted means, flat at the points)")
-      ->one_of(names(kinds))
-      ->capture_default_str()
+void add_surface_kind(App& app, petzval::FocalSurfaceOptions& options, Option* points) {
+  add_choice(app, "--kind", options.kind, kinds,
+             "interpolation of distances between points: affine (by planes, which are reproduced) or shepard "
+             "(weighted means, flat at the points)",
+             names(kinds))
       ->needs(points);
-  add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
+  add_number(app, "--beta", options.beta, {1, 8, "a number from 1 to 8"},
              "exponent of the weights: a point's weight is its distance in the picture to the power -beta")
       ->needs(points);
 }
 
-ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
-                               petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
-  const Json list = examples::points_of(setup.points_file, read_json(setup.points_file));
-  return focal_surface_through(list, setup, camera, origin, focus_mm, to_lens);
+petzval::FocalSurface read_focal_surface(const std::string& file, petzval::CameraSetup& setup,
+                                         const petzval::Camera& camera, const WorldToLens& to_lens) {
+  return focal_surface_through(examples::points_of(file, read_json(file)), file, setup, camera, to_lens);
 }
 
-ReadSurface focal_surface_through(const Json& list, const FocalSurfaceSetup& setup, const petzval::Camera& camera,
-                                  petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
-  std::vector<petzval::FocalPoint> points = points_of(list, setup.points_file, camera, origin, to_lens);
+petzval::FocalSurface focal_surface_through(const Json& list, const std::string& file, petzval::CameraSetup& setup,
+                                            const petzval::Camera& camera, const WorldToLens& to_lens) {
+  const petzval::Lens& lens = camera.lens();
+  setup.focal_points = points_of(list, file, camera, setup.focus.origin, to_lens);
+  setup.focal_surface.default_inverse_distance =
+      1 / (*setup.focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, setup.focus.origin));
   try {
-    petzval::FocalSurface surface(
-        petzval::thick_lens(camera.lens()), camera.film(), points,
-        {named(setup.kind, kinds), setup.beta,
-         1 / (focus_mm + petzval::pupils(camera.lens()).entrance.z - petzval::origin_z(camera.lens(), origin))});
-    return {std::move(points), std::move(surface)};
+    return {petzval::thick_lens(lens), camera.film(), setup.focal_points, setup.focal_surface};
   } catch (const petzval::Error& error) {
-    throw petzval::Error(setup.points_file + ": " + error.what());
+    throw petzval::Error(file + ": " + error.what());
   }
 }
 

@@ -47,15 +47,16 @@ std::vector<FocusPull::Key> read_keys(const std::string& file, std::string& orig
 
 }  // namespace
 
-std::uint32_t FocusPull::count(const std::string& from, const std::string& points) const {
+std::uint32_t FocusPull::count(petzval::DistanceOrigin from, const std::string& points) const {
   if (frames_per_s > 0 && points.empty() && !text.ends_with(".json")) {
     throw petzval::Error("--fps = " + number(frames_per_s) + ": must be used with --focus KEYS.json or --points");
   }
   if (!moves()) return std::max(frames, 1u);
   const std::string given = "--focus = " + text;
   if (!points.empty()) throw petzval::Error(given + " with --points; must be one distance");
-  if (!origin.empty() && origin != from) {
-    throw petzval::Error(text + ": distance_from = " + origin + "; must be the value of --from, " + from);
+  if (!origin.empty() && origin != name(from)) {
+    throw petzval::Error(text + ": distance_from = " + origin + "; must be the value of --from, " +
+                         std::string(name(from)));
   }
   if (!text.ends_with(".json")) {
     if (frames < 2) throw petzval::Error(given + ": must be used with --frames of 2 or more");
@@ -80,7 +81,7 @@ double FocusPull::distance_mm(std::uint32_t frame, std::uint32_t count) const {
 
 double FocusPull::nearest_mm() const { return 1 / std::ranges::max(keys, {}, &Key::inverse_mm).inverse_mm; }
 
-void add_focus_pull(App& app, FocusPull& pull, double& focus_mm, const std::string& frames_help) {
+void add_focus_pull(App& app, FocusPull& pull, std::optional<double>& focus_mm, const std::string& frames_help) {
   app.add_option(
          "--focus",
          [&](const std::string& text) {
@@ -94,7 +95,7 @@ void add_focus_pull(App& app, FocusPull& pull, double& focus_mm, const std::stri
            focus_mm = parse_length("--focus", text.substr(0, colon), positive_length);
            if (colon == std::string::npos) return;
            const double last = parse_length("--focus", text.substr(colon + 1), positive_length);
-           pull.keys = {{0, 1 / focus_mm}, {1, 1 / last}};
+           pull.keys = {{0, 1 / *focus_mm}, {1, 1 / last}};
          },
          "distance of the subject in focus (mm or inf), or A:B, from A to B over --frames; steps of 1/distance are "
          "equal; KEYS.json: distances over time, as petzval pull writes them")

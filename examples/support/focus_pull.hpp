@@ -27,7 +27,7 @@ struct FocusPull {
   /// @param from    value of --from
   /// @param points  file of a focal surface; must be empty if the focus moves
   /// @throws petzval::Error that names the flag
-  std::uint32_t count(const std::string& from, const std::string& points) const;
+  std::uint32_t count(petzval::DistanceOrigin from, const std::string& points) const;
   /// Time of a frame, s.
   double time_s(std::uint32_t frame) const noexcept { return frame / (frames_per_s > 0 ? frames_per_s : 24); }
   /// Distance in focus in a frame of `count` frames, mm.
@@ -38,7 +38,7 @@ struct FocusPull {
 
 /// Adds --focus, which also sets focus_mm to the first distance, --frames and --fps.
 /// @param frames_help  names of the results of frames
-void add_focus_pull(App& app, FocusPull& pull, double& focus_mm, const std::string& frames_help);
+void add_focus_pull(App& app, FocusPull& pull, std::optional<double>& focus_mm, const std::string& frames_help);
 
 /// The keys as a file. @param from  origin of the distances
 std::string to_json(const std::vector<FocusPull::Key>& keys, const std::string& from);

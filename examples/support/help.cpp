@@ -35,7 +35,7 @@ constexpr std::array all_groups{
     Group{"Quality", true,
           " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "},
     Group{"Depths", true, " --depth-kind --depth-unit --near --far --white "},
-    Group{"Files", true, " --glasses --configuration --coatings --match-glasses --ignore-apertures "},
+    Group{"Files", true, " --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "
           "--weight-distribution --weight-strength --weight-map "},

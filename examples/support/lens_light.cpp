@@ -17,8 +17,6 @@
 
 namespace examples {
 
-namespace {
-
 petzval::Coating coating_named(const std::string& name) {
   if (name == "none") return {};
   if (name == "mgf2") return petzval::Coating::quarter_wave();
@@ -51,6 +49,8 @@ petzval::Coating coating_named(const std::string& name) {
   petzval::validate(coating, name);
   return coating;
 }
+
+namespace {
 
 /// Change of the reciprocal colour temperature, 10^6 / K, as on the filters of photographers: positive is warmer.
 std::optional<double> shift_mired(const petzval::LensColour& colour) {

@@ -15,6 +15,9 @@ namespace examples {
 /// Adds --coatings. by_default: the default in words.
 Option* add_coatings(App& app, std::string& coatings, const std::string& by_default);
 
+/// The coating that --coatings names. @throws petzval::Error if the name is unknown or the file is invalid
+petzval::Coating coating_named(const std::string& name);
+
 /// The lens with the coating of --coatings, or with the coatings of its file if `coatings` is "file" or empty; nullopt
 /// if it is empty and the file states no coatings: losses are not modelled.
 /// @throws petzval::Error if the name is unknown or the file is invalid

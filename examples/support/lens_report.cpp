@@ -62,7 +62,7 @@ Json merged(const Json& object, std::initializer_list<std::pair<std::string_view
 }  // namespace
 
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
-  return petzval::origin_z(lens, subject.focus.distance_origin()) - subject.distance_mm;
+  return petzval::origin_z(lens, subject.focus.origin) - subject.distance_mm;
 }
 
 petzval::LensReport::Conditions conditions(const Report& r, const petzval::Lens& colours) {
@@ -104,10 +104,12 @@ std::vector<Entry> entries(const Report& r, const petzval::LensReport::Section& 
 
 std::string in_words(const ReportSubject& subject) {
   std::string text = "subject ";
-  text += std::isinf(subject.distance_mm) ? "at infinity"
-                                          : number(subject.distance_mm) + " mm from the " + subject.focus.from();
+  text += std::isinf(subject.distance_mm)
+              ? "at infinity"
+              : number(subject.distance_mm) + " mm from the " + in_words(subject.focus.origin);
   if (subject.distance_of_file) text += " (as in the file)";
-  return text + "; film " + (subject.film_of_file ? "as in the file" : "in focus (" + subject.focus.criterion + ")");
+  return text + "; film " +
+         (subject.film_of_file ? "as in the file" : "in focus (" + in_words(subject.focus.criterion) + ")");
 }
 
 std::string in_words(const ReportLight& light) {
@@ -158,9 +160,9 @@ Json to_json(const Report& r, const petzval::LensReport& aberrations) {
   const Json stated_conditions{{"design_aperture", aperture},
                                {"subject_distance_mm", finite_or_null(subject.distance_mm)},
                                {"subject_distance_of_file", subject.distance_of_file},
-                               {"distance_from", subject.focus.origin},
+                               {"distance_from", petzval::name(subject.focus.origin)},
                                {"film", subject.film_of_file ? "file" : "focus"},
-                               {"criterion", subject.film_of_file ? Json() : Json(subject.focus.criterion)},
+                               {"criterion", subject.film_of_file ? Json() : Json(petzval::name(subject.focus.criterion))},
                                {"wavelengths_nm", subject.light.wavelengths_nm},
                                {"wavelength_weights", subject.light.weights},
                                {"wavelengths_of_file", subject.light.of_file},

@@ -26,7 +26,7 @@ struct Entry {
 struct ReportSubject {
   double distance_mm = std::numeric_limits<double>::infinity();  ///< subject distance from the origin of `focus`, mm
   bool distance_of_file = false;
-  FocusFlags focus{};
+  petzval::FocusOptions focus{};
   bool film_of_file = true;
   ReportLight light{};
   ReportFields fields{};

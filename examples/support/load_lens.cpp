@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "files.hpp"
@@ -15,6 +13,7 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "suggest.hpp"
 #include "text.hpp"
@@ -56,23 +55,12 @@ void say_what_limits(const LensFile& file, const petzval::Lens& lens) {
        ", which limits the axial beam, serves as the stop");
 }
 
-petzval::ConfigurationChoice choice_of(const std::string& text) {
-  if (text.empty()) return {};
-  double number = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (status == std::errc() && end == text.data() + text.size()) return number;
-  return text;
-}
-
 /// The file of a lens: the path itself, or the file of a shipped lens with this name.
 std::filesystem::path lens_path(const std::string& text) {
-  std::error_code error;
-  if (text.empty() || std::filesystem::exists(text, error) || text.find('/') != std::string::npos) return text;
-  const std::filesystem::path folder = petzval::data_directory() / "lenses";
-  if (const auto file = folder / (text + ".json"); std::filesystem::exists(file, error)) return file;
-  if (std::filesystem::path(text).extension() == ".json") return text;
+  if (const auto file = petzval::find_lens(text)) return *file;
+  if (text.empty() || text.find('/') != text.npos || text.ends_with(".json")) return text;
   std::vector<std::string> names;
-  for (const auto& file : entries(folder)) names.push_back(file.stem().string());
+  for (const auto& file : entries(petzval::data_directory() / "lenses")) names.push_back(file.stem().string());
   const std::string near = nearest(text, names);
   throw petzval::Error("LENS = " + text + ": no file and no shipped lens has this name" +
                        (near.empty() ? "; petzval lenses lists them" : "; did you mean " + near + "?"));
@@ -82,7 +70,7 @@ constexpr const char* lens_help =
     "a shipped lens (petzval lenses) or a file: JSON as in data/lenses, .zmx, .seq, .len, .lens, OpticalBench or other "
     "tables";
 
-Option* add_lens_options(App& app, LensInput& input, Option* lens) {
+Option* add_lens_options(App& app, petzval::LensSource& input, Option* lens) {
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
@@ -100,13 +88,13 @@ Option* add_lens_options(App& app, LensInput& input, Option* lens) {
 
 }  // namespace
 
-Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
+Option* add_lens(App& app, petzval::LensSource& input, const std::string& name, const std::string& remark) {
   Option* lens = app.add_option(name, input.file, lens_help + (remark.empty() ? "" : "; " + remark));
   if (name == "LENS" && remark.empty()) lens->required();
   return add_lens_options(app, input, lens);
 }
 
-Option* add_lenses(App& app, LensInput& input, std::vector<std::string>& lenses) {
+Option* add_lenses(App& app, petzval::LensSource& input, std::vector<std::string>& lenses) {
   return add_lens_options(app, input, app.add_option("LENS", lenses, lens_help)->required());
 }
 
@@ -116,30 +104,24 @@ Option* add_thin_lens(App& app, double& focal_length_mm) {
       ->default_str("");
 }
 
-petzval::GlassCatalogue glasses_of(const LensInput& input) {
-  petzval::GlassCatalogue glasses = petzval::glass_tables();
-  for (const std::string& file : input.glass_files) {
-    petzval::GlassFile more = petzval::read_glasses(file);
-    for (const petzval::ImportWarning& warning : more.warnings) {
-      note(file + ": line " + std::to_string(warning.line) + ": " + warning.command + ' ' + warning.message);
+petzval::GlassCatalogue glasses_of(const petzval::LensSource& input) {
+  std::vector<petzval::GlassFile> files;
+  petzval::GlassCatalogue glasses = petzval::glasses_of(input, &files);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (const petzval::ImportWarning& warning : files[i].warnings) {
+      note(input.glass_files[i] + ": line " + std::to_string(warning.line) + ": " + warning.command + ' ' +
+           warning.message);
     }
-    glasses = petzval::with_glasses(glasses, std::move(more.glasses));
   }
   return glasses;
 }
 
-ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses) {
-  const std::size_t slash = input.configuration.find('/');
-  const std::string first = input.configuration.substr(0, slash);
-  petzval::Prescription whole = petzval::read_lens(lens_path(input.file), {.glasses = &glasses, .entry = first});
-  std::string position = input.configuration;
-  if (whole.imported && !whole.imported->entry.empty()) {
-    position = slash == std::string::npos ? "" : position.substr(slash + 1);
-  }
-  return {std::move(whole), choice_of(position), !position.empty()};
+petzval::Prescription read_whole(const petzval::LensSource& input, const petzval::GlassCatalogue& glasses) {
+  if (!input.prescription) lens_path(input.file);
+  return petzval::read_lens(input, &glasses);
 }
 
-petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Prescription lens,
+petzval::Prescription with_matched_glasses(const petzval::LensSource& input, petzval::Prescription lens,
                                            const petzval::GlassCatalogue& glasses) {
   if (!input.match_glasses) return lens;
   petzval::MatchedGlasses result = petzval::match_glasses(lens, glasses);
@@ -153,19 +135,24 @@ petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Pres
   return std::move(result.prescription);
 }
 
-LensFile read_lens(const LensInput& input) {
-  auto glasses = glasses_of(input);
-  ReadLens read = read_configurations(input, glasses);
+LensFile read_lens(const petzval::LensSource& input) {
+  auto glasses = examples::glasses_of(input);
+  petzval::Prescription whole = read_whole(input, glasses);
   petzval::Prescription prescription = with_matched_glasses(
-      input, for_flag("--configuration", [&] { return petzval::configured(read.whole, read.configuration); }), glasses);
-  std::string id = lens_path(input.file).stem().string();
+      input,
+      for_flag("--configuration",
+               [&] {
+                 return petzval::configured(
+                     whole, petzval::configuration_of(input, whole).value_or(petzval::ConfigurationChoice()));
+               }),
+      glasses);
+  std::string id = input.prescription ? whole.id : lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
   constexpr std::array<std::string_view, 5> formats_from_1{"zemax", "codev", "oslo", "opticalbench", "table"};
   const bool from_1 =
       prescription.imported && std::ranges::find(formats_from_1, prescription.imported->format) != formats_from_1.end();
-  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number.value_or(from_1),
-          std::move(read.whole)};
+  return {std::move(id), std::move(prescription), std::move(glasses), from_1, std::move(whole), input};
 }
 
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm) {
@@ -175,8 +162,16 @@ LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::
   return {std::move(file), std::move(lens)};
 }
 
-LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm) {
-  return compiled(read_lens(input), wavelengths_nm);
+LoadedLens load_lens(const petzval::LensSource& input, std::span<const double> wavelengths_nm) {
+  return compiled(examples::read_lens(input), wavelengths_nm, input.primary_nm);
+}
+
+LoadedLens load_lens(const petzval::CameraSetup& setup, std::span<const double> wavelengths_nm) {
+  if (!(setup.lens.thin_mm > 0)) return load_lens(setup.lens, wavelengths_nm);
+  LensFile file{"thin_lens", petzval::thin_elements(setup.lens.thin_mm, *setup.f_number),
+                examples::glasses_of(setup.lens)};
+  petzval::Lens lens = compiled_for(file, wavelengths_nm, setup.lens.primary_nm);
+  return {std::move(file), std::move(lens)};
 }
 
 double half_field_deg(const LensFile& file, const petzval::Lens& lens) {
@@ -186,7 +181,10 @@ double half_field_deg(const LensFile& file, const petzval::Lens& lens) {
 }
 
 petzval::CompileOptions compile_options(const LensFile& file, std::optional<double> primary_nm) {
-  return {.glasses = &file.glasses, .missing_glass = petzval::MissingGlass::abbe, .primary_nm = primary_nm};
+  return {.glasses = &file.glasses,
+          .missing_glass = file.source.require_glasses ? petzval::MissingGlass::error : petzval::MissingGlass::abbe,
+          .clamp_wavelengths = file.source.clamp_wavelengths,
+          .primary_nm = primary_nm};
 }
 
 petzval::Lens compiled_for(const LensFile& file, std::span<const double> wavelengths_nm,

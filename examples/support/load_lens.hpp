@@ -8,44 +8,31 @@
 
 #include "cli.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace examples {
 
-/// The options of a command line about a lens.
-struct LensInput {
-  std::string file{};                         ///< path of a lens in any format of read_lens()
-  std::vector<std::string> glass_files{};     ///< searched before the tables of petzval
-  std::string configuration{};                ///< a name or a number from 0; empty: the first
-  bool match_glasses = false;                 ///< media without a name get the nearest glass
-  std::optional<int> first_surface_number{};  ///< number of the first surface in texts; nullopt: as the file counts
-};
-
 /// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
-Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
+Option* add_lens(App& app, petzval::LensSource& input, const std::string& name = "LENS",
+                 const std::string& remark = "");
 
 /// Adds LENS... and the options of add_lens() for all of them; sets `lenses` instead of input.file.
-Option* add_lenses(App& app, LensInput& input, std::vector<std::string>& lenses);
+Option* add_lenses(App& app, petzval::LensSource& input, std::vector<std::string>& lenses);
 
 /// Adds --thin-lens: the focal length of a thin lens (mm) instead of LENS; 0 if the option is not given.
 Option* add_thin_lens(App& app, double& focal_length_mm);
 
 /// The glass tables of petzval and the catalogues of --glasses.
-petzval::GlassCatalogue glasses_of(const LensInput& input);
+petzval::GlassCatalogue glasses_of(const petzval::LensSource& input);
 
-/// A lens file with all its configurations, and the configuration chosen on the command line: "tele", or "1" and "0.5"
-/// by number. If a file holds several lenses, the first word names the lens: "2004", "2004/long".
-struct ReadLens {
-  petzval::Prescription whole;
-  petzval::ConfigurationChoice configuration;
-  bool one_configuration = false;  ///< true if the command line names a configuration
-};
-ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses);
+/// The lens file with all its configurations. @throws petzval::Error with similar names if there is no such file
+petzval::Prescription read_whole(const petzval::LensSource& input, const petzval::GlassCatalogue& glasses);
 
 /// Names media after the nearest glasses if --match-glasses is given. Notes on standard error give each medium with its
 /// glass, or the reason why no glass matches.
-petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Prescription lens,
+petzval::Prescription with_matched_glasses(const petzval::LensSource& input, petzval::Prescription lens,
                                            const petzval::GlassCatalogue& glasses);
 
 /// An uncompiled lens file in the configuration of the command line.
@@ -53,8 +40,9 @@ struct LensFile {
   std::string id;  ///< file name without extension, and configuration; prefix of output files
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
-  int first_surface_number = 0;   ///< of LensInput, else 1 for formats in which the first surface is number 1
+  int first_surface_number = 0;   ///< 1 for formats in which the first surface is number 1
   petzval::Prescription whole{};  ///< with all configurations
+  petzval::LensSource source{};   ///< the source of the lens
 };
 
 /// A lens file and its compiled lens.
@@ -63,7 +51,7 @@ struct LoadedLens : LensFile {
 };
 
 /// Reads a lens file.
-LensFile read_lens(const LensInput& input);
+LensFile read_lens(const petzval::LensSource& input);
 
 /// Compiles a lens file. primary_nm: Lens::primary_wavelength.
 ///
@@ -73,7 +61,9 @@ LensFile read_lens(const LensInput& input);
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm = {});
 
 /// Reads and compiles a lens file.
-LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm);
+LoadedLens load_lens(const petzval::LensSource& input, std::span<const double> wavelengths_nm);
+/// The same for the lens of a set-up, also a thin lens.
+LoadedLens load_lens(const petzval::CameraSetup& setup, std::span<const double> wavelengths_nm);
 
 /// The largest field that the source declares, or 10 degrees if it declares no field. lens: compiled from the file.
 double half_field_deg(const LensFile& file, const petzval::Lens& lens);

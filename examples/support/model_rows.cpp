@@ -39,16 +39,16 @@ void for_numbers(const ModelRow& row, Use use) {
 }  // namespace
 
 petzval::Film ModelOptions::film() const {
-  if (resolution.empty()) return setup.film(0, 0, usual_columns);
+  if (resolution.empty()) return setup.sized_film(0, 0, usual_columns);
   const auto [columns, rows] = parse_size("--size", resolution, pixel_count);
   if (columns != std::floor(columns) || rows != std::floor(rows)) {
     throw petzval::Error("--size = \"" + resolution + "\"; must be two whole numbers");
   }
-  return setup.film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
+  return setup.sized_film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
 }
 
 void add_model_options(App& app, ModelOptions& options) {
-  add_lens(app, options.lens_file);
+  add_lens(app, options.setup.lens);
   add_camera(app, options.setup);
   app.add_option("--size", options.resolution,
                  "pixels across and down; without --film the film takes their shape within 36 x 24 mm")
@@ -58,7 +58,7 @@ void add_model_options(App& app, ModelOptions& options) {
 }
 
 LoadedLens focused_lens(const ModelOptions& options) {
-  LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  LoadedLens loaded = load_lens(options.setup.lens, std::array{petzval::d_line_nm});
   loaded.lens = focused(loaded, options.setup);
   return loaded;
 }
@@ -66,10 +66,10 @@ LoadedLens focused_lens(const ModelOptions& options) {
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {
   const auto size = [](double a, double b) { return number(a) + " x " + number(b); };
   const petzval::Film film = options.film();
-  const double focus = options.setup.focus_mm;
+  const double focus = *options.setup.focus_mm;
   return "f/" + number(petzval::real_f_number(lens), 3) + ", focused at " +
-         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the " + options.setup.focus.from()) + " (" +
-         options.setup.focus.criterion + "), film " + size(film.width_mm, film.height_mm) + " mm, " +
+         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the " + in_words(options.setup.focus.origin)) +
+         " (" + in_words(options.setup.focus.criterion) + "), film " + size(film.width_mm, film.height_mm) + " mm, " +
          size(film.columns, film.rows) + " pixels of " + number(1e3 * film.pixel_mm(), 3) + " um, " +
          number(petzval::d_line_nm, 6) + " nm";
 }

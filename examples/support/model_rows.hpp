@@ -16,8 +16,7 @@ namespace examples {
 
 /// Command line of the programs that compare models.
 struct ModelOptions {
-  LensInput lens_file;
-  CameraSetup setup;
+  CameraFlags setup;
   std::string resolution{};  ///< empty: not given
   bool json = false;
 

@@ -6,7 +6,6 @@
 
 #include "camera_setup.hpp"
 #include "cli.hpp"
-#include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -16,49 +15,43 @@
 namespace examples {
 
 void add_movement_options(App& app, MovementOptions& options) {
-  add_lens(app, options.lens_file, "LENS", "may be omitted for a thin lens");
+  add_lens(app, options.setup.lens, "LENS", "may be omitted for a thin lens");
   app.add_option("--model", options.model,
                  "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
       ->one_of({"thin", "thick", "real"})
       ->default_str("real");
-  add_thin_lens(app, options.focal_length_mm);
-  add_number(app, "--f-number", options.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
+  add_thin_lens(app, options.setup.lens.thin_mm);
+  add_number(app, "--f-number", options.setup.f_number, positive_number,
+             "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
-  app.add_option(
-         "--film",
-         [&options](const std::string& text) {
-           options.film_mm = text;
-           options.film_given = true;
-         },
-         "width and height of the film (mm); if given, points outside the picture are ignored")
-      ->type_name("WxH")
-      ->default_str(options.film_mm);
+  add_film(app, options.setup, "width and height of the film (mm); if given, points outside the picture are ignored");
 }
 
 MovingLens moving_lens(const MovementOptions& options) {
   MovingLens result;
-  const auto [width, height] = parse_size("--film", options.film_mm, film_side);
-  result.film = {.width_mm = width, .height_mm = height};
-  if (options.focal_length_mm > 0) {
-    if (!options.lens_file.file.empty()) {
-      throw petzval::Error("--thin-lens cannot be combined with the lens file " + options.lens_file.file + " (LENS)");
+  const petzval::LensSource& source = options.setup.lens;
+  const std::optional<double> f_number = options.setup.f_number;
+  result.film = options.setup.film;
+  if (source.thin_mm > 0) {
+    if (!source.file.empty()) {
+      throw petzval::Error("--thin-lens cannot be combined with the lens file " + source.file + " (LENS)");
     }
     if (options.model_name() != "thin") {
       throw petzval::Error("--thin-lens with --model " + options.model + "; must be --model thin");
     }
-    if (!(options.f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
+    if (!f_number) throw petzval::Error("--thin-lens needs --f-number");
     result.id = "thin_lens";
-    result.title = "Thin lens, " + number(options.focal_length_mm) + " mm";
-    result.conditions = "f/" + number(options.f_number, 3);
-    result.ideal = petzval::thin_lens(options.focal_length_mm, options.f_number);
+    result.title = "Thin lens, " + number(source.thin_mm) + " mm";
+    result.conditions = "f/" + number(*f_number, 3);
+    result.ideal = petzval::thin_lens(source.thin_mm, *f_number);
     return result;
   }
-  if (options.lens_file.file.empty()) {
+  if (source.file.empty()) {
     throw petzval::Error("LENS is required, or --thin-lens F --f-number N");
   }
-  const LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  const LoadedLens loaded = load_lens(source, std::array{petzval::d_line_nm});
   petzval::Lens lens = loaded.lens;
-  if (options.f_number > 0) lens = stopped_to(lens, options.f_number);
+  if (f_number) lens = stopped_to(lens, *f_number);
   result.id = loaded.id;
   result.title = lens.name();
   result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model_name() + " model";

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "camera_setup.hpp"
 #include "cli.hpp"
-#include "load_lens.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/lens/lens.hpp"
@@ -17,12 +17,10 @@ namespace examples {
 
 /// Command line of the programs that move the film.
 struct MovementOptions {
-  LensInput lens_file;
-  std::string model, film_mm = "36x24";
-  double f_number = 0, focal_length_mm = 0;  // 0: not given
-  bool film_given = false;
+  CameraFlags setup;  ///< lens, f-number and film
+  std::string model;
 
-  std::string model_name() const { return !model.empty() ? model : focal_length_mm > 0 ? "thin" : "real"; }
+  std::string model_name() const { return !model.empty() ? model : setup.lens.thin_mm > 0 ? "thin" : "real"; }
 };
 void add_movement_options(App& app, MovementOptions& options);
 

@@ -38,15 +38,6 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The degrees of an angle that give the same double in radians.
-double exact_degrees(double angle) {
-  const double near = petzval::degrees(angle);
-  for (const double candidate : {near, std::nextafter(near, -1e9), std::nextafter(near, 1e9)}) {
-    if (petzval::radians(candidate) == angle) return candidate;
-  }
-  return near;
-}
-
 std::string exact(double value) { return std::isinf(value) ? "inf" : Json(value).dump(); }
 
 /// Quotes a word of a command line if it has characters that are special in a shell.
@@ -189,13 +180,9 @@ lens_blur::LensView Session::view(bool from_points) const {
   view.focus_depth_mm = state.focus_mm + petzval::pupils(state.lens).entrance.z;
   if (from_points && state.surface) {
     view.surface.reset();
-    view.surface = examples::focal_surface_through(surface_points(),
-                                                   {.points_file = "points",
-                                                    .kind = std::string(name(state.surface_options.kind)),
-                                                    .beta = state.surface_options.beta},
-                                                   view.camera(1), petzval::DistanceOrigin::front_vertex,
-                                                   state.focus_mm, [](const Vec3<double>& p) { return p; })
-                       .surface;
+    petzval::CameraSetup setup{.focus_mm = state.focus_mm, .focal_surface = state.surface_options};
+    view.surface = examples::focal_surface_through(surface_points(), "points", setup, view.camera(1),
+                                                   [](const Vec3<double>& p) { return p; });
   }
   return view;
 }
@@ -327,8 +314,8 @@ Json Session::state_json(const Frame& frame) const {
   const petzval::FocusEditorState& state = editor_->state();
   Json json{{"film",
              {{"z_mm", state.film.z()},
-              {"tilt_deg", exact_degrees(state.film.tilt_rad)},
-              {"swing_deg", exact_degrees(state.film.swing_rad)}}},
+              {"tilt_deg", examples::exact_degrees(state.film.tilt_rad)},
+              {"swing_deg", examples::exact_degrees(state.film.swing_rad)}}},
             {"lens", json_of(state.choice)},
             {"f_number", state.f_number},
             {"focus_mm", examples::finite_or_null(state.focus_mm)},
@@ -426,14 +413,14 @@ std::string Session::blur_command(const std::string& points_file) const {
   }
   add_if(options_.fov_deg > 0, "--fov", exact(options_.fov_deg));
   add("--focus", exact(state.focus_mm));
-  add_if(state.film.tilt_rad != 0, "--tilt", exact(exact_degrees(state.film.tilt_rad)));
-  add_if(state.film.swing_rad != 0, "--swing", exact(exact_degrees(state.film.swing_rad)));
+  add_if(state.film.tilt_rad != 0, "--tilt", exact(examples::exact_degrees(state.film.tilt_rad)));
+  add_if(state.film.swing_rad != 0, "--swing", exact(examples::exact_degrees(state.film.swing_rad)));
   add_if(state.choice.rgb, "--wavelengths", "rgb");
   const petzval::Iris& iris = state.lens.iris();
   if (iris.blades > 0) {
     add("--blades", std::to_string(iris.blades));
     add_if(iris.roundness != 0, "--roundness", exact(iris.roundness));
-    add_if(iris.rotation_rad != 0, "--iris-rotation", exact(exact_degrees(iris.rotation_rad)));
+    add_if(iris.rotation_rad != 0, "--iris-rotation", exact(examples::exact_degrees(iris.rotation_rad)));
   }
   const petzval::BokehControls& bokeh = state.bokeh;
   add_if(bokeh.lens_ratio != 1, "--lens-ratio", exact(bokeh.lens_ratio));

@@ -65,7 +65,7 @@ double miss_rate(const petzval::BlurredImage& picture) {
 
 lens_blur::LensFlags thin_lens(double diameter_mm) {
   lens_blur::LensFlags lens;
-  lens.thin_lens_mm = 50, lens.iris.f_number = 50 / diameter_mm, lens.focus_mm = focus_mm, lens.rays = 100;
+  lens.setup.lens.thin_mm = 50, lens.setup.f_number = 50 / diameter_mm, lens.setup.focus_mm = focus_mm, lens.rays = 100;
   return lens;
 }
 
@@ -205,9 +205,9 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
     lens_blur::LensFlags lens;
   };
   lens_blur::LensFlags tilted = thin_lens(100);
-  tilted.tilt_deg = 1;
+  tilted.setup.film.tilt_rad = petzval::radians(1);
   lens_blur::LensFlags singlet;
-  singlet.singlet = "102,-102,12,N-BK7", singlet.focus_mm = focus_mm, singlet.fov_deg = 30, singlet.rays = 100;
+  singlet.singlet = "102,-102,12,N-BK7", singlet.setup.focus_mm = focus_mm, singlet.fov_deg = 30, singlet.rays = 100;
   lens_blur::LensFlags chroma = singlet;
   chroma.wavelengths = "rgb";
   for (const Row& row : {Row{"thin, 300 mm", thin_lens(300)}, Row{"thin, 100 mm, film tilted by 1 degree", tilted},

@@ -22,7 +22,7 @@ using petzval::LensRays;
 
 LensFlags thin_lens() {
   LensFlags flags;
-  flags.thin_lens_mm = 50, flags.iris.f_number = 0.5, flags.focus_mm = 5000;
+  flags.setup.lens.thin_mm = 50, flags.setup.f_number = 0.5, flags.setup.focus_mm = 5000;
   return flags;
 }
 
@@ -73,8 +73,8 @@ TEST(BlurLens, BlursAPointIntoADiscOfTheFormula) {
 TEST(BlurLens, IsSharpAtItsFocusWithASecondRimOrAberrations) {
   for (const double f_number : {0.7, 1.4, 4.0}) {
     LensFlags rim = thin_lens(), expressive = thin_lens();
-    rim.iris.f_number = expressive.iris.f_number = f_number;
-    rim.bokeh.controls.lens_ratio = 1.1;
+    rim.setup.f_number = expressive.setup.f_number = f_number;
+    rim.setup.camera.bokeh.lens_ratio = 1.1;
     expressive.expressive.curvature_points = {"0,0:0", "9,0:0.001", "0,9:0.001"};
     for (const LensFlags& flags : {rim, expressive}) {
       const LensRays rays = lens_of(flags).rays(1000, 1);
@@ -87,7 +87,8 @@ TEST(BlurLens, IsSharpAtItsFocusWithASecondRimOrAberrations) {
 TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
   // The image of the plane (0, sin 30, cos 30) . x = 2 cos 30 m is tilted by 0.848 degrees.
   LensFlags flags = thin_lens();
-  flags.iris.f_number = 2.5, flags.focus_mm = 2000, flags.tilt_deg = -0.848136346759917;
+  flags.setup.f_number = 2.5, flags.setup.focus_mm = 2000,
+  flags.setup.film.tilt_rad = petzval::radians(-0.848136346759917);
   BlurLens lens = lens_of(flags);
   const LensRays rays = lens.rays(500, 1);
   const double d = 2000 * std::cos(petzval::radians(30.0));
@@ -96,7 +97,7 @@ TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
     EXPECT_NEAR(focus_of(rays, 0, 70, row) * d, 0.5 * up + std::cos(petzval::radians(30.0)), 1e-9) << row;
   }
   // A swing moves the right side nearer or farther.
-  flags.tilt_deg = 0, flags.swing_deg = 0.848136346759917;
+  flags.setup.film.tilt_rad = 0, flags.setup.film.swing_rad = petzval::radians(0.848136346759917);
   const LensRays swung = lens_of(flags).rays(500, 1);
   const double left = focus_of(swung, 0, 0, 30), right = focus_of(swung, 0, 79, 30);
   EXPECT_NEAR(left + right, 2 * 1 / 2000.0, 1e-9);
@@ -118,9 +119,10 @@ TEST(BlurLens, HasAFocusForEachColour) {
 
 TEST(BlurLens, FocusesASingletAndAPrescription) {
   LensFlags singlet;
-  singlet.singlet = "100,-100,8,N-BK7", singlet.focus_mm = 3000, singlet.iris.f_number = 8;
+  singlet.singlet = "100,-100,8,N-BK7", singlet.setup.focus_mm = 3000, singlet.setup.f_number = 8;
   LensFlags file;
-  file.lens_file.file = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_52mm_f1.8.json", file.focus_mm = 3000;
+  file.setup.lens.file = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_52mm_f1.8.json",
+  file.setup.focus_mm = 3000;
   for (const LensFlags& flags : {singlet, file}) {
     const LensRays rays = lens_of(flags, 300, 200).rays(1000, 1);
     EXPECT_FALSE(rays.shift_invariant());
@@ -141,13 +143,13 @@ TEST(BlurLens, RefusesInvalidOptions) {
     expect_tokens(said(change), tokens);
   };
   says([](LensFlags&) {}, {"no error"});
-  says([](LensFlags& f) { f.thin_lens_mm = 0; }, {"--thin-lens", "LENS", "--singlet"});
+  says([](LensFlags& f) { f.setup.lens.thin_mm = 0; }, {"--thin-lens", "LENS", "--singlet"});
   says([](LensFlags& f) { f.singlet = "50,-50,5,N-BK7"; }, {2, "--thin-lens", "--singlet"});
-  says([](LensFlags& f) { f.iris.f_number = 0; }, {"--thin-lens", "--f-number"});
-  says([](LensFlags& f) { f.focus_mm = 50; }, {50});
-  says([](LensFlags& f) { f.iris.f_number = 0.01; }, {"lens"});
+  says([](LensFlags& f) { f.setup.f_number.reset(); }, {"--thin-lens", "--f-number"});
+  says([](LensFlags& f) { f.setup.focus_mm = 50; }, {50});
+  says([](LensFlags& f) { f.setup.f_number = 0.01; }, {"lens"});
   for (const char* flawed : {"50,-50,5", "50,x,5,N-BK7", "50,-50,5,MOON", "50,-50,5,N-BK7,1"}) {
-    says([&](LensFlags& f) { f.thin_lens_mm = f.iris.f_number = 0, f.singlet = flawed; }, {"--singlet"});
+    says([&](LensFlags& f) { f.setup.lens.thin_mm = 0, f.setup.f_number.reset(), f.singlet = flawed; }, {"--singlet"});
   }
 }
 

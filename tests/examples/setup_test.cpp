@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reports with a set-up of a camera, and --setup, which takes it back.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "program.hpp"
+
+namespace {
+
+using nlohmann::json;
+
+class Setup : public Programs {
+ protected:
+  void SetUp() override {
+    Programs::SetUp();
+    petzval::ExrPart part{.width = 4, .height = 4};
+    part.channels = {{"Y", {0, 1, 1, 0, 1, 1, 0.5f, 1, 1, 1, 1, 1, 0, 1, 1, 0}}};
+    petzval::write_exr({&part, 1}, path("map.exr"));
+    write("points.json", R"({"points": [{"world_mm": [0, 0, -1200]}, {"pixel": [5, 2], "distance_mm": null},
+      {"pixel": [20, 12], "distance_mm": 700, "blur_px": 2, "weight": 0.5}]})");
+    write("coating.csv", "index,absorption,thickness_nm\n1.38,0,99.6\n");
+  }
+
+  /// Runs a command with the inputs that no set-up states; returns its report.
+  json report(const std::string& command, Arguments arguments, const std::string& out) const {
+    static const std::map<std::string, Arguments> usual{
+        {"render", {"--scene", "balls", "--spp", "2", "--integrator", "path"}},
+        {"blur", {"--scene", "town", "--rays", "4", "--format", "exr"}},
+        {"psf", {"--at", "2m", "--rays", "64", "--format", "exr"}}};
+    const Arguments& more = usual.at(command);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"--out", path(out)});
+    const Outcome outcome = run(command, expanded(arguments));
+    EXPECT_EQ(outcome.status, 0) << command << ' ' << outcome.err;
+    for (const auto& file : std::filesystem::directory_iterator(path(out))) {
+      const json found = file.path().extension() == ".json" ? read_json(file) : json();
+      if (found.is_object() && found.contains("setup")) {
+        std::filesystem::copy_file(file, path(out + ".json"), std::filesystem::copy_options::overwrite_existing);
+        return found;
+      }
+    }
+    ADD_FAILURE() << command << ": no report has a set-up";
+    return {};
+  }
+  /// The values of all pictures in a folder.
+  std::vector<std::vector<float>> pictures(const std::string& out) const {
+    std::vector<std::vector<float>> all;
+    std::vector<std::filesystem::path> files;
+    for (const auto& file : std::filesystem::directory_iterator(path(out))) {
+      if (file.path().extension() == ".exr" && file.path().filename() != "sums.exr") files.push_back(file.path());
+    }
+    std::ranges::sort(files);
+    for (const auto& file : files) {
+      for (const petzval::ExrPart& part : petzval::read_exr_parts(file)) {
+        for (const auto& channel : part.channels) all.push_back(channel.values);
+      }
+    }
+    EXPECT_FALSE(all.empty());
+    return all;
+  }
+  void expect_round_trip(const std::string& command, const std::vector<Arguments>& lines) const {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string first = command + std::to_string(i), again = first + "_again";
+      const json before = report(command, lines[i], first);
+      const json after = report(command, {"--setup", "@" + first + ".json"}, again);
+      EXPECT_EQ(after["setup"], before["setup"]) << first;
+      EXPECT_EQ(pictures(again), pictures(first)) << first;
+    }
+  }
+};
+
+TEST_F(Setup, RenderedPictureIsMadeAgainToTheBit) {
+  const auto with = [](Arguments more) {
+    more.insert(more.end(), {"LENS", "--size", "24x16", "--focus", "1m"});
+    return more;
+  };
+  expect_round_trip(
+      "render",
+      {with({}),
+       with({"--f-number", "4", "--blades", "6", "--roundness", "0.2", "--iris-rotation", "7.3", "--iris-area", "equal",
+             "--coatings", "@coating.csv", "--tilt", "3.1", "--swing", "-1", "--film", "30x20"}),
+       with({"--f-number", "1.99", "--wavelengths", "rgb", "--coatings", "none", "--normalisation", "irradiance"}),
+       with({"--wavelengths", "hero", "--from", "film", "--criterion", "paraxial"}),
+       with({"--wavelengths", "F", "--model", "thin_two_disc", "--weight-map", "@map.exr"}),
+       with({"--model", "auto", "--budget", "5", "--iris-image", "@map.exr", "--lens-ratio", "1.2", "--keep-light"}),
+       with({"--model", "thick", "--points", "@points.json", "--kind", "shepard", "--beta", "2"}),
+       with({"--model", "thick", "--from-lens", "2", "--dispersion", "0.5", "--wavelengths", "rgb"}),
+       {"LENS:zoom_70-210mm_f4", "--configuration", "1", "--match-glasses", "--size", "24x16", "--focus", "inf"}});
+}
+
+TEST_F(Setup, CameraOfTheLibraryEqualsTheCameraOfTheReport) {
+  const std::vector<Arguments> lines{
+      {"LENS", "--f-number", "4", "--blades", "6", "--iris-area", "equal", "--coatings", "mgf2"},
+      {"LENS:double_gauss_52mm_f1.8", "--f-number", "1.8", "--wavelengths", "hero", "--from", "film"},
+      {"LENS:zoom_70-210mm_f4", "--configuration", "1", "--match-glasses"}};
+  for (Arguments line : lines) {
+    line.insert(line.end(), {"--focus", "2m", "--size", "8x8"});
+    const json found = report("render", line, "first");
+    const petzval::Camera camera = petzval::camera(petzval::camera_setup(read(path("first.json")), "first.json"));
+    EXPECT_EQ(petzval::real_f_number(camera.lens()), found["job"]["real_f_number"].get<double>()) << line[0];
+    EXPECT_EQ(camera.lens().name(), found["job"]["lens"]) << line[0];
+    EXPECT_EQ(petzval::name(camera.model()), found["model"]) << line[0];
+  }
+}
+
+TEST_F(Setup, FlagsChangeSingleValues) {
+  const Arguments lens{"LENS", "--size", "24x16"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.end(), lens.begin(), lens.end());
+    return more;
+  };
+  report("render", with({"--focus", "1m", "--blades", "5", "--model", "thin"}), "first");
+  const json changed = report(
+      "render",
+      {"--setup", "@first.json", "--focus", "2m", "--f-number", "4", "--size", "12", "LENS:double_gauss_52mm_f1.8"},
+      "changed");
+  const json direct = report("render",
+                             {"LENS:double_gauss_52mm_f1.8", "--focus", "2m", "--f-number", "4", "--blades", "5",
+                              "--model", "thin", "--film", "36x24", "--size", "12"},
+                             "direct");
+  EXPECT_EQ(changed["setup"], direct["setup"]);
+  EXPECT_EQ(pictures("changed"), pictures("direct"));
+}
+
+TEST_F(Setup, RefusesFaultsWithFileKeyAndValue) {
+  report("render", {"LENS", "--focus", "1m", "--size", "8x8"}, "first");
+  const json setup = read_json(path("first.json"))["setup"];
+  const auto refused = [&](const char* pointer, const json& value, std::vector<petzval::testing::Token> tokens) {
+    json bad = setup;
+    bad[json::json_pointer(pointer)] = value;
+    write("bad.json", bad.dump(1));
+    tokens.push_back("bad.json:");
+    expect_failure("render", {"--scene", "balls", "--setup", path("bad.json"), "--out", path("bad")}, tokens);
+  };
+  refused("/colour", 1, {"colour"});
+  refused("/lens/thin_mm", 50, {"lens", 2});
+  refused("/lens/file", "gone.zmx", {"file", "gone.zmx"});
+  refused("/film/tilt_rad", 4, {"tilt_rad", 4});
+  refused("/camera/model", "thinnest", {"model", "thinnest"});
+  json unfocused = setup;
+  unfocused.erase("focus_mm");
+  write("unfocused.json", unfocused.dump());
+  const Arguments line{"--scene", "balls", "--setup", path("unfocused.json"), "--spp", "1", "--out", path("out")};
+  expect_failure("render", line, {"--setup", "unfocused.json", "focus_mm", "--focus"});
+  expect_failure("render", {"--scene", "balls", "--setup", path("none.json"), "--out", path("out")}, {"none.json"});
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+#ifdef PETZVAL_TEST_HAS_blur
+TEST_F(Setup, BlurredPictureIsMadeAgainToTheBit) {
+  const auto thin = [](Arguments more) {
+    more.insert(more.end(), {"--thin-lens", "50", "--f-number", "2", "--size", "24x16", "--focus", "3m"});
+    return more;
+  };
+  expect_round_trip("blur",
+                    {thin({}),
+                     thin({"--fov", "37.7", "--tilt", "3", "--wavelengths", "rgb", "--weight-map", "@map.exr"}),
+                     thin({"--points", "@points.json", "--dispersion", "2"}),
+                     {"LENS", "--size", "24x16", "--focus", "3m", "--fov", "20", "--swing", "2"},
+                     {"LENS", "--size", "24x16", "--focus", "3m", "--points", "@points.json", "--kind", "shepard"},
+                     {"--singlet", "50,-50,5,N-BK7", "--size", "24x16", "--focus", "3m"}});
+}
+
+TEST_F(Setup, SetupOfOneCommandIsTakenByOthers) {
+  const json rendered = report(
+      "render", {"LENS", "--size", "24x16", "--focus", "1500", "--f-number", "4", "--blades", "7", "--swing", "2"},
+      "rendered");
+  const json blurred = report("blur", {"--setup", "@rendered.json"}, "blurred");
+  const json point = report("psf", {"--setup", "@blurred.json"}, "point");
+  const json again = report("render", {"--setup", "@point.json"}, "again");
+  EXPECT_EQ(blurred["focus_mm"], 1500);
+  EXPECT_EQ(blurred["columns"], 24);
+  EXPECT_EQ(point["results"][0]["focus_mm"], 1500);
+  EXPECT_EQ(again["setup"], rendered["setup"]);
+  EXPECT_EQ(pictures("again"), pictures("rendered"));
+}
+#endif
+
+TEST_F(Setup, PointSpreadFunctionIsMadeAgainToTheBit) {
+  expect_round_trip(
+      "psf", {{"LENS", "--focus", "1m"},
+              {"LENS", "--focus", "2m", "--f-number", "4", "--blades", "5", "--wavelengths", "475,510,650", "--model",
+               "thin_two_disc", "--iris-image", "@map.exr", "--criterion", "paraxial"}});
+}
+
+}  // namespace
