@@ -235,7 +235,7 @@ petzval::CameraSetup BlurLens::setup() const {
 std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
   examples::CameraFlags& setup = flags_.setup;
   if (setup.points_file.empty() && setup.focal_points.empty()) return {};
-  const petzval::Camera plain = view_.camera(1);
+  const petzval::Camera plain = view_.camera();
   if (!keyed_ && !setup.points_file.empty()) {
     const renderer::LensCamera in_world(plain, pose_);
     return examples::read_focal_surface(setup.points_file, setup, plain,

@@ -16,10 +16,9 @@ petzval::ModelKind LensView::model() const noexcept {
   return thin() ? petzval::ModelKind::thin : first_order ? petzval::ModelKind::thick : petzval::ModelKind::exact_float;
 }
 
-petzval::Camera LensView::camera(std::uint32_t supersample) const {
-  petzval::Film fine = film;
-  fine.columns *= static_cast<int>(supersample), fine.rows *= static_cast<int>(supersample);
-  return petzval::Camera(lens, fine,
+petzval::Camera LensView::camera() const {
+  if (made) return made();
+  return petzval::Camera(lens, film,
                          {.model = model(),
                           .normalisation = petzval::Normalisation::unity_on_axis,
                           .bokeh = controls,
@@ -37,8 +36,8 @@ std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const p
 
 /// A Camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that exact rays
 /// are sharpest elsewhere than the thin lens. A focal surface states the focus of the thin lens.
-petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers, std::uint32_t supersample) const {
-  if (!thin() || (surface && surface->fixes_distance())) return camera(supersample);
+petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers) const {
+  if (!thin() || (surface && surface->fixes_distance())) return camera();
   petzval::Film upright = film;
   upright.tilt_rad = upright.swing_rad = 0, upright.columns = layers.columns, upright.rows = layers.rows;
   const auto inverse_distance = thin_focus(layers);
@@ -52,13 +51,16 @@ petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers, std
   sharp.film = upright;
   sharp.film.columns = film.columns, sharp.film.rows = film.rows;
   sharp.surface.emplace(petzval::thick_lens(lens), upright, points);
-  return sharp.camera(supersample);
+  sharp.made = {};
+  return sharp.camera();
 }
 
 petzval::LayerCamera LensView::layers(std::uint32_t supersample) const {
-  if (!thin()) return petzval::layer_camera(camera(supersample));
-  return petzval::layer_camera(film.columns * static_cast<int>(supersample), film.rows * static_cast<int>(supersample),
-                               vertical_angle_rad);
+  const auto side = static_cast<int>(supersample);
+  if (thin()) return petzval::layer_camera(film.columns * side, film.rows * side, vertical_angle_rad);
+  petzval::LayerCamera layers = petzval::layer_camera(camera());
+  layers.columns *= side, layers.rows *= side, layers.focal_px *= side, layers.axis *= side;
+  return layers;
 }
 
 petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm,
@@ -76,7 +78,7 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
   if (!thin() || controls.vignettes() || !expressive.empty()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
-    return petzval::LensRays::of(sharp_at_focus(layers, pattern.supersample), layers, points, wavelengths, options);
+    return petzval::LensRays::of(sharp_at_focus(layers), layers, points, wavelengths, options);
   }
 
   petzval::ThinLens thin_lens{.radius_mm = thin_diameter_mm / 2,

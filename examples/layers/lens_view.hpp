@@ -36,11 +36,12 @@ struct LensView {
   std::optional<petzval::FocalSurface> surface = {};
   petzval::ExpressiveLens expressive = {};
   bool first_order_only = false;  ///< a preview of a real lens
+  /// The camera of this lens, film and options, if it has been made already; empty: camera() makes one.
+  std::function<const petzval::Camera&()> made = {};
 
   bool thin() const noexcept { return thin_diameter_mm > 0; }
   petzval::ModelKind model() const noexcept;
-  /// The camera with film pixels of a part of the picture's pixels.
-  petzval::Camera camera(std::uint32_t supersample) const;
+  petzval::Camera camera() const;
   /// The camera of the layers, without overscan.
   petzval::LayerCamera layers(std::uint32_t supersample) const;
   /// The rays of the lens through the layers. nearest_mm: depth of the nearest surface.
@@ -52,7 +53,7 @@ struct LensView {
   /// Inverse distance in focus of a thin lens without a focal surface at raster positions, 1/mm. It is linear over the
   /// picture; the picture of a tilted film keeps its frame.
   std::function<double(const petzval::Vec2<double>&)> thin_focus(const petzval::LayerCamera& layers) const;
-  petzval::Camera sharp_at_focus(const petzval::LayerCamera& layers, std::uint32_t supersample) const;
+  petzval::Camera sharp_at_focus(const petzval::LayerCamera& layers) const;
 };
 
 }  // namespace lens_blur

@@ -178,11 +178,14 @@ lens_blur::LensView Session::view(bool from_points) const {
                            .expressive = state.expressive};
   view.vertical_angle_rad = petzval::radians(options_.fov_deg > 0 ? options_.fov_deg : 30);
   view.focus_depth_mm = state.focus_mm + petzval::pupils(state.lens).entrance.z;
-  if (from_points && state.surface) {
+  if (!(from_points && state.surface)) {
+    view.made = state.camera;
+  } else {
     view.surface.reset();
     petzval::CameraSetup setup{.focus_mm = state.focus_mm, .focal_surface = state.surface_options};
-    view.surface = examples::focal_surface_through(surface_points(), "points", setup, view.camera(1),
+    view.surface = examples::focal_surface_through(surface_points(), "points", setup, state.camera(),
                                                    [](const Vec3<double>& p) { return p; });
+    if (!view.thin()) view.made = [own = view.camera()]() -> const petzval::Camera& { return own; };
   }
   return view;
 }
@@ -235,6 +238,7 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
   const auto start = std::chrono::steady_clock::now();
   lens_blur::LensView lens = view(false);
   lens.first_order_only = first_order && !lens.thin();
+  if (lens.first_order_only) lens.made = {};
   const petzval::LensRays table = lens.rays(camera_, {.rays = rays, .over_pixels = !input_.scene()},
                                             lens_blur::least_depth(nearest_mm_), options_.threads, stop);
   petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_, .stop = stop},
@@ -294,7 +298,7 @@ std::vector<float> Session::blur_map() const {
 std::vector<std::optional<petzval::Vec2<double>>> Session::handles() const {
   const petzval::FocusEditorState& state = editor_->state();
   std::vector<std::optional<petzval::Vec2<double>>> result;
-  const petzval::Camera camera(state.lens, state.film, state.camera_options());
+  const petzval::Camera& camera = state.camera();
   for (const petzval::FocusMark& mark : state.targets) {
     result.emplace_back();
     if (!mark.place_mm) continue;

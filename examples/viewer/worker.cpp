@@ -188,7 +188,7 @@ void Worker::look() {
   next.section = section_of(state.lens, state.film);
   next.bokeh = {};
   try {
-    const petzval::Camera camera(state.lens, state.film, state.camera_options());
+    const petzval::Camera& camera = state.camera();
     next.section.rays = rays_through(camera, state.film.point(raster.x, raster.y));
     const float depth = session_.depth_mm(static_cast<int>(raster.x), static_cast<int>(raster.y));
     if (depth > 0) next.bokeh = bokeh_of(camera, raster, static_cast<double>(depth), session_.focal_px());

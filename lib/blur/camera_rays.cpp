@@ -53,7 +53,7 @@ class RaysOfCamera {
 
   void operator()(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,
                   std::span<LayerRay> found) const {
-    const FilmPoint film = camera_.film().point(raster.x, raster.y);
+    const FilmPoint film = film_point(raster);
     const Wavelength wavelength = wavelengths_[static_cast<std::size_t>(channel)];
     const Bundle bundle(camera_, film, points, wavelength);
     double light = 0, sum = 0;
@@ -85,6 +85,12 @@ class RaysOfCamera {
   }
 
  private:
+  FilmPoint film_point(const Vec2<double>& raster) const noexcept {
+    const Film& film = camera_.film();
+    const int parts = layers_.columns / film.columns;
+    return film.point(raster.x / parts, raster.y / parts);
+  }
+
   /// A table of one ray per node whose weight is the light of the film point.
   ///
   /// The pupil of the samples is slightly larger than the part that transmits rays. The transmitted fraction needs more
@@ -98,8 +104,7 @@ class RaysOfCamera {
     }
     const auto source = [&](int channel, const Vec2<double>& raster, std::span<const PupilPoint>,
                             std::span<LayerRay> found) {
-      const Bundle bundle(camera_, camera_.film().point(raster.x, raster.y), points,
-                          wavelengths_[static_cast<std::size_t>(channel)]);
+      const Bundle bundle(camera_, film_point(raster), points, wavelengths_[static_cast<std::size_t>(channel)]);
       found[0] = {raster, {0, 0}, 0};
       for (std::size_t i = 0; i < points.size(); ++i) found[0].weight += bundle.weight(i) * factors[i];
     };
@@ -157,10 +162,11 @@ LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span
   if (camera.film().travel_mm != 0) {
     throw Error("lens rays: the film travels while the shutter is open; must not travel (Film::at)");
   }
-  if (layers.columns != camera.film().columns || layers.rows != camera.film().rows) {
+  const int columns = camera.film().columns, rows = camera.film().rows, parts = std::max(1, layers.columns / columns);
+  if (layers.columns != parts * columns || layers.rows != parts * rows) {
     throw Error("lens rays: picture of the layers: columns x rows = " + std::to_string(layers.columns) + " x " +
-                std::to_string(layers.rows) + "; must equal the film's, " + std::to_string(camera.film().columns) +
-                " x " + std::to_string(camera.film().rows));
+                std::to_string(layers.rows) + "; must equal the film's, " + std::to_string(columns) + " x " +
+                std::to_string(rows) + ", or a whole multiple");
   }
   const Wavelength primary{};
   if (wavelengths.empty()) wavelengths = {&primary, 1};

@@ -169,9 +169,8 @@ std::optional<FocusPlace> place_of(Event& event, const Context& context, double 
   }
   if (!scene.place) event.refuse("pixel", *pixel, "left out: the scene has no depths");
   const FocusEditorState& state = context.state;
-  const Camera camera(state.lens, state.film, state.camera_options());
   // The chief ray: the middle of the pupil.
-  const CameraRay chief = camera.sample({.film = state.film.point(at[0], at[1]), .pupil_u = 0, .pupil_v = 0});
+  const CameraRay chief = state.camera().sample({.film = state.film.point(at[0], at[1]), .pupil_u = 0, .pupil_v = 0});
   if (!chief) return {};
   const double entrance_z = pupils(state.lens).entrance.z;
   const Vec3<double> origin = to_scene(scene, entrance_z, chief.ray.origin);

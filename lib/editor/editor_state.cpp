@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 
@@ -280,6 +282,19 @@ bool moved(const EditorSettings& settings, const Focused& before, const Focused&
          (!after.lens.focus_positions().empty() && differ(before.focus_mm, after.focus_mm));
 }
 
+/// A function that makes a camera when it is called first, in any thread, and keeps it.
+template <class Make>
+std::function<const Camera&()> once(Make make) {
+  struct Kept {
+    std::once_flag flag;
+    std::optional<Camera> camera;
+  };
+  return [make = std::move(make), kept = std::make_shared<Kept>()]() -> const Camera& {
+    std::call_once(kept->flag, [&] { kept->camera.emplace(make()); });
+    return *kept->camera;
+  };
+}
+
 }  // namespace
 
 Vec3<double> to_lens(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept {
@@ -395,6 +410,8 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
     state.targets.push_back(std::move(mark));
   }
   measure(settings, base, points, state);
+  state.camera = once(
+      [lens = state.lens, film = state.film, options = state.camera_options()] { return Camera(lens, film, options); });
   return state;
 }
 

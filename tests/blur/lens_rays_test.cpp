@@ -274,6 +274,17 @@ TEST(CameraRays, HaveTheIrradianceOfTheCameraInSmallImages) {
   }
 }
 
+TEST(CameraRays, PartsOfFilmPixelsEqualAFineFilm) {
+  Film fine = film;
+  fine.columns *= 2, fine.rows *= 2;
+  const Camera camera(double_gauss(), film);
+  const LayerCamera layers = layer_camera(Camera(double_gauss(), fine));
+  std::vector<LayerRay> parts(64), whole(64);
+  LensRays::of(camera, layers, vogel_points(64)).at(0, 701, 95, parts);
+  LensRays::of(Camera(double_gauss(), fine), layers, vogel_points(64)).at(0, 701, 95, whole);
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(parts[i].position, whole[i].position);
+}
+
 TEST(CameraRays, RefuseTravellingFilmsAndOtherImages) {
   Film travelling = film;
   travelling.travel_mm = 1;

@@ -92,8 +92,7 @@ TEST(FocusEditor, FocalSurfaceMeetsAnyPoints) {
   EXPECT_NEAR(mark(editor, "b").blur_px.value(), 3, 0.5);
   EXPECT_NEAR(mark(editor, "c").blur_px.value(), 0, 1e-6);
   EXPECT_EQ(editor.state().camera_options().model, ModelKind::thin);
-  const Camera camera(editor.state().lens, editor.state().film, editor.state().camera_options());
-  EXPECT_LT(camera.focal_steepness().steepness, 1);
+  EXPECT_LT(editor.state().camera().focal_steepness().steepness, 1);
 }
 
 TEST(FocusEditor, ReachesARequestedBlurInPixels) {
@@ -261,7 +260,7 @@ TEST(FocusEditor, CameraOfAThinLensIsSharpAtThePoints) {
     }
     editor.apply(R"({"type": "serve", "by": "tilt"})");
     const Film& film = editor.state().film;
-    const Camera camera(editor.state().lens, film, editor.state().camera_options());
+    const Camera& camera = editor.state().camera();
     for (const FocusMark& point : editor.state().targets) {
       // All rays of the film point pass through the scene point.
       const Vec3<double> there = editor.to_lens(*point.place_mm);

@@ -149,11 +149,11 @@ class PETZVAL_API LensRays {
   /// Normalisation of the camera.
   ///
   /// @param camera       the lens camera; its film must not travel
-  /// @param layers       the layer camera, with as many pixels as the film
+  /// @param layers       the layer camera; its pixels are those of the film, or equal parts of them
   /// @param points       pupil points, `options.set_count` sets of equal size
   /// @param wavelengths  one wavelength, or the wavelengths of red, green and blue; empty: the primary wavelength
   /// @param options      nearest depth, sets and threads
-  /// @throws Error       as the constructor; also if the film travels or its pixels differ from the layer camera
+  /// @throws Error       as the constructor; also if the film travels or the numbers of pixels do not fit
   ///
   /// Accuracy: for exact models the light is measured at 49 positions along the longer side and interpolated. At 800 x
   /// 600 it is within 0.5 % of the brightest pixel of 8192 samples per pixel for 55 lenses of data/, and 2 % for the

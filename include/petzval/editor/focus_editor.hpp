@@ -81,7 +81,7 @@ struct FocusMark {
   std::optional<Vec2<double>> raster = {};  ///< raster position of the chief ray
 };
 
-/// The state of a FocusEditor: a lens and a film, ready for a Camera.
+/// The state of a FocusEditor: a lens, a film and their camera.
 struct PETZVAL_API FocusEditorState {
   FocusLensChoice choice = {};
   Lens lens;       ///< with its iris, stopped down and focused
@@ -100,6 +100,12 @@ struct PETZVAL_API FocusEditorState {
   std::string_view status = "solved";
   double time_s = 0;
   std::vector<FocusMark> targets = {};
+
+  /// The camera of the state as the editor made it: of lens, film and camera_options(). Copies of the state share it.
+  /// The first call makes it, which takes some ms.
+  ///
+  /// @throws Error as Camera
+  std::function<const Camera&()> camera = {};
 
   /// True if the lens is thin and has no thickness, colour or aberrations of its own.
   bool thin() const noexcept { return choice.name.empty(); }
@@ -121,7 +127,7 @@ struct PETZVAL_API FocusEditorState {
 ///     editor.apply(R"({"type": "add_point", "id": "eye", "pixel": [410, 220]})");
 ///     editor.apply(R"({"type": "add_point", "id": "hand", "pixel": [300, 480], "blur_px": 4})");
 ///     editor.apply(R"({"type": "serve", "by": "tilt"})");
-///     const Camera camera(editor.state().lens, editor.state().film, editor.state().camera_options());
+///     const Camera& camera = editor.state().camera();
 ///
 /// Types and keys:
 ///
