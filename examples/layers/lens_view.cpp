@@ -23,7 +23,8 @@ petzval::Camera LensView::camera() const {
                           .normalisation = petzval::Normalisation::unity_on_axis,
                           .bokeh = controls,
                           .focal_surface = surface,
-                          .expressive = expressive});
+                          .expressive = expressive,
+                          .paraxial_focus = thin()});
 }
 
 std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const petzval::LayerCamera& layers) const {
@@ -34,10 +35,9 @@ std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const p
   };
 }
 
-/// A Camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that exact rays
-/// are sharpest elsewhere than the thin lens. A focal surface states the focus of the thin lens.
+/// The picture of a tilted film keeps the frame of the upright film, on which a focal surface states the focus.
 petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers) const {
-  if (!thin() || (surface && surface->fixes_distance())) return camera();
+  if (!thin() || !film.tilted() || (surface && surface->fixes_distance())) return camera();
   petzval::Film upright = film;
   upright.tilt_rad = upright.swing_rad = 0, upright.columns = layers.columns, upright.rows = layers.rows;
   const auto inverse_distance = thin_focus(layers);

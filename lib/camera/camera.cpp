@@ -124,9 +124,10 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   const double half = std::max(film.width_mm, film.height_mm) / 2;
   const auto rim =
       bokeh.vignettes() ? std::optional(PupilRim{bokeh.lens_ratio, bokeh.rate_of_change / half}) : std::nullopt;
-  data_ = std::make_shared<const Data>(facts, placed_film,
-                                       camera_detail::make_model(options.model, facts, radius, options.threads, rim),
-                                       radius, options);
+  data_ = std::make_shared<const Data>(
+      facts, placed_film,
+      camera_detail::make_model(options.model, facts, radius, options.threads, rim, options.paraxial_focus), radius,
+      options);
 }
 
 Camera::Camera(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}

@@ -32,6 +32,7 @@
 #include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
 #include "make_model.hpp"
+#include "paraxial_model.hpp"
 #include "petzval/core/parallel.hpp"
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
@@ -108,7 +109,9 @@ EntrancePupilTable entrance_of(const Lens& lens, const RayModel& model, int thre
   if (model.kind().is_exact()) return traced_entrances(lens, model.pupils(), threads);
   if (model.kind().is_first_order() && !lens.iris().round()) {  // the pupils of a round stop enclose the others
     const Lens round = with_iris(lens, {});
-    return entrance_of(round, *make_model(model.kind(), round, model.pupils().film_radius()), threads);
+    const double radius = model.pupils().film_radius();
+    return entrance_of(round, *make_model(model.kind(), round, radius, 1, {}, model.first_order()->paraxial_focus()),
+                       threads);
   }
   if (const RayPolynomial* const polynomial = model.polynomial(); polynomial && !lens.iris().round()) {
     return entrance_of(with_iris(lens, {}), PolynomialModel(*polynomial, model.pupils().with_round_stop()), threads);

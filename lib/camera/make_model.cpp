@@ -20,11 +20,11 @@ FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const L
 }
 
 std::shared_ptr<const RayModel> make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads,
-                                           const std::optional<PupilRim>& rim) {
+                                           const std::optional<PupilRim>& rim, bool paraxial_focus) {
   const auto behind_rim = [&](const FilmPupilTable& pupils) {
     return rim ? behind(*rim, pupils, facts.lens()) : pupils;
   };
-  if (model.is_first_order()) return std::make_shared<ParaxialModel>(model, facts, film_radius, rim);
+  if (model.is_first_order()) return std::make_shared<ParaxialModel>(model, facts, film_radius, rim, paraxial_focus);
   if (model.is_polynomial()) {
     FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius, threads);
     return std::make_shared<PolynomialModel>(RayPolynomial::fit(facts.lens(), pupils, model.degree()),

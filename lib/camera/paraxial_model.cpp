@@ -31,11 +31,12 @@ namespace {
 constexpr double farthest = 1e12;  // mm, for lines
 constexpr double largest = 1e18;   // for rays before normalisation; its square is finite in float
 
-/// Map from film and pupil point to position and slope in the plane of the first vertex, in front of the lens, focused
-/// where exact rays are sharpest.
-RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
+/// Map from film and pupil point to position and slope in the plane of the first vertex, in front of the lens.
+RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section,
+                       bool paraxial_focus) {
   const StopMaps maps = stop_maps(facts, wavelength, space, section);
-  return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps, section), 1}).then(maps.to_front);
+  const double power = paraxial_focus ? 0 : best_focus_power(facts, wavelength, maps, section);
+  return maps.from_film.then({1, 0, power, 1}).then(maps.to_front);
 }
 
 /// Maps of a model; rays of a pinhole pass the middle of the pupil.
@@ -197,11 +198,12 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
 }  // namespace
 
 ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
-                             const std::optional<PupilRim>& rim)
+                             const std::optional<PupilRim>& rim, bool paraxial_focus)
     : RayModel(model, rim ? behind(*rim, pupils_of(model, facts, film_radius), facts.lens())
                           : pupils_of(model, facts, film_radius)),
       primary_(pupils().primary_wavelength()),
       z_(facts.lens().surfaces().front().vertex_z),
+      paraxial_focus_(paraxial_focus),
       equal_sections_(!has_cylinders(facts.lens())) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils().space();
@@ -214,8 +216,8 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
   }
   std::vector<SectionMaps> thick;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    const RayMatrix y = to_scene_map(facts, w, space, Meridian::y);
-    const RayMatrix x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x) : y;
+    const RayMatrix y = to_scene_map(facts, w, space, Meridian::y, paraxial_focus);
+    const RayMatrix x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x, paraxial_focus) : y;
     thick.push_back({x, y});
     to_film_.push_back({x.inverse(), y.inverse()});
     const double middle = model == ModelKind::pinhole ? thick_image(facts, w, space, Meridian::y).shift : 0;

@@ -40,7 +40,7 @@ struct ParaxialJob;
 /// First-order models of a lens: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, focused where exact rays of the film centre are
-/// sharpest (best_focus.hpp). They differ in the pupil:
+/// sharpest (best_focus.hpp) unless paraxial_focus(). They differ in the pupil:
 ///
 ///     thick           the image of the stop
 ///     thin            the entrance pupil, placed in the rear principal plane
@@ -59,7 +59,8 @@ class PETZVAL_API ParaxialModel final : public RayModel {
   /// @throws Error  if the model is not of first order; if the lens is afocal, has no pupils or no finite pupil that
   ///                the model needs; for a pinhole or two discs if it has cylinders; if the film lies in the image of
   ///                the stop or, for thin lenses, in the rear principal plane; and as FilmPupilTable::clipped_by_rim()
-  ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius, const std::optional<PupilRim>& rim = {});
+  ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius, const std::optional<PupilRim>& rim = {},
+                bool paraxial_focus = false);
 
   const ParaxialModel* first_order() const noexcept override { return this; }
   /// Along x and along y: true if the pupil is an inverted image of the stop. False for two discs.
@@ -69,6 +70,7 @@ class PETZVAL_API ParaxialModel final : public RayModel {
   /// Maps at any wavelength; nullopt if the wavelength is not covered.
   std::optional<SectionMaps> maps(Wavelength wavelength) const noexcept;
   double z() const noexcept { return z_; }
+  bool paraxial_focus() const noexcept { return paraxial_focus_; }  ///< CameraOptions::paraxial_focus
   /// One for each wavelength: rays of a pinhole pass the pupil plane at the shift times the film point. Empty unless
   /// this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
@@ -101,7 +103,8 @@ class PETZVAL_API ParaxialModel final : public RayModel {
   ParaxialJob<T> job(const RayWavelengths& wavelengths, SectionMaps& own) const noexcept;
 
   std::size_t primary_;
-  double z_ = 0;      // plane of the first vertex, in which rays are given
+  double z_ = 0;  // plane of the first vertex, in which rays are given
+  bool paraxial_focus_;
   double reach_ = 0;  // largest sum of absolute coordinates of a line
   bool equal_sections_;
   std::array<bool, 2> stop_upside_down_{};

@@ -446,27 +446,14 @@ std::vector<double> FocusEditorState::first_order_blurs_px(std::span<const Scene
 
 CameraOptions FocusEditorState::camera_options() const {
   const bool first_order = surface || !expressive.empty();
-  CameraOptions options{.model = thin()        ? ModelKind::thin
-                                 : first_order ? ModelKind::thick
-                                               : ModelKind::exact_float,
-                        .normalisation = Normalisation::unity_on_axis,
-                        .bokeh = bokeh,
-                        .focal_surface = surface,
-                        .expressive = expressive};
-  if (thin() && !surface) {
-    // A camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that this is
-    // not the focus of a thin lens: a focal surface states it.
-    const IdealLens ideal = thick_lens(lens);
-    std::vector<FocalPoint> points;
-    for (const FilmPoint& corner : film.corners()) {
-      const ScenePoint seen = ideal.scene_of(film.position(corner));
-      const double distance = ideal.pupils.entrance.z - seen.position.z;
-      const bool infinite = seen.at_infinity || !(distance > 0);
-      points.push_back({.film_point = corner, .inverse_distance = infinite ? 0 : 1 / distance});
-    }
-    options.focal_surface.emplace(ideal, film, points);
-  }
-  return options;
+  return {.model = thin()        ? ModelKind::thin
+                   : first_order ? ModelKind::thick
+                                 : ModelKind::exact_float,
+          .normalisation = Normalisation::unity_on_axis,
+          .bokeh = bokeh,
+          .focal_surface = surface,
+          .expressive = expressive,
+          .paraxial_focus = thin()};
 }
 
 }  // namespace petzval

@@ -99,7 +99,8 @@ void members(S& lens, const Of& of) {
 template <Is<CameraOptions> S, class Of>
 void members(S& options, const Of& of) {
   of("model", options.model, models()), of("normalisation", options.normalisation, all_normalisations);
-  of("bokeh", options.bokeh), of("expressive", options.expressive), of("transmission", options.transmission);
+  of("bokeh", options.bokeh), of("expressive", options.expressive), of("paraxial_focus", options.paraxial_focus);
+  of("transmission", options.transmission);
   of("clamp_wavelengths", options.clamp_wavelengths), of("importance_tables", options.importance_tables);
 }
 template <Is<FocalPoint> S, class Of>

@@ -270,7 +270,10 @@ TEST(FocusEditor, CameraOfAThinLensIsSharpAtThePoints) {
         ASSERT_TRUE(ray);
         const double run = (there.z - ray.ray.origin.z) / ray.ray.direction.z;
         const Vec3<double> at = ray.ray.origin + ray.ray.direction * run;
-        EXPECT_LT(std::hypot(at.x - there.x, at.y - there.y), 0.5) << f_number << ' ' << point.id;
+        EXPECT_LT(std::hypot(at.x - there.x, at.y - there.y), 1e-7) << f_number << ' ' << point.id;
+        const Importance back = camera.importance({ray.ray.origin, -ray.ray.direction});
+        EXPECT_NEAR(back.raster.x, point.raster->x, 1e-6);
+        EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction), ray.weight, 2e-3 * ray.weight);
       }
     }
   }

@@ -59,7 +59,7 @@ json full_setup() {
       "bokeh": {"blades": 6, "lens_ratio": 1.5, "rate_of_change": 0.4, "keep_light": true, "weight_distribution": 4,
         "weight_strength": 0.8, "map_keeps_mean": true},
       "expressive": {"power": [{"radius": 0.5, "power": 1.01}],
-        "film_offsets": [{"film_point": {"x": 3, "y": 4}, "offset_mm": 0.2, "weight": 3}], "dispersion": [0.5]},
+        "film_offsets": [{"film_point": {"x": 3, "y": 4}, "offset_mm": 0.2, "weight": 3}], "dispersion": [0.5]}, "paraxial_focus": true,
       "transmission": true, "clamp_wavelengths": true, "importance_tables": true},
     "iris_map": "map.png",
     "focal_points": [{"film_point": {"x": 1, "y": -2}, "inverse_distance": 3.3333333333333335e-4, "blur_mm": 0.01,

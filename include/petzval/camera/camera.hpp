@@ -45,6 +45,9 @@ struct CameraOptions {
   /// film point stopped down by s stops more, one connection in 2^s passes.
   std::optional<FocalSurface> focal_surface = {};
   ExpressiveLens expressive{};  ///< aberrations; first-order models only
+  /// First-order models only. true: sharp at the paraxial image, as for thin_elements(), whose exact rays have
+  /// aberrations. false: sharp where the exact rays of the film's centre are sharpest.
+  bool paraxial_focus = false;
   /// true: weights and importance include the light that the surfaces reflect and the glasses absorb, as
   /// transmittance() of a ray, with the coatings of the lens (LensSurface::coating). false: all light passes, at no
   /// cost. model_error() and choose_model() state what is then left out. Camera::transmission_error() states the error.
@@ -80,7 +83,8 @@ class PETZVAL_API Camera {
 
   /// Sets up a camera with a built-in model.
   ///
-  /// First-order models are focused where the exact rays of the film's centre are sharpest. A film that is tilted or
+  /// First-order models are focused where the exact rays of the film's centre are sharpest, unless
+  /// CameraOptions::paraxial_focus is set. A film that is tilted or
   /// travels takes four to six times as long to set up (7 ms instead of 1.3 ms for a double Gauss).
   ///
   /// @param lens     the lens; its film moves to film.z_mm, as with with_film()
