@@ -9,10 +9,8 @@
 
 #include "petzval/core/geometry.hpp"
 #include "petzval/editor/focus_editor.hpp"
-#include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace {
 
@@ -25,13 +23,9 @@ std::optional<FocusPlace> floor_and_wall(const Ray<double>& ray, double) {
   return FocusPlace{.point = {ray.origin + along * std::fmin(to_floor, 6000)}};
 }
 
-Lens load(const FocusLensChoice& choice) {
-  if (choice.name.empty()) return compile(thin_elements(choice.thin_mm, choice.f_number));
-  return compile(read_prescription(data_directory() / "lenses" / (choice.name + ".json")));
-}
-
 void print(const char* what, const FocusEditorState& state) {
-  std::cout << what << ": film at " << state.film.z() << " mm, tilt " << degrees(state.film.tilt_rad)
+  const Film& film = state.setup.film;
+  std::cout << what << ": film at " << film.z() << " mm, tilt " << degrees(film.tilt_rad)
             << " degrees, focus on the axis " << state.focus_mm << " mm\n";
   for (const FocusMark& mark : state.targets) {
     std::cout << "  " << mark.id << ": " << mark.status;
@@ -42,10 +36,10 @@ void print(const char* what, const FocusEditorState& state) {
 
 void run() {
   FocusScene scene{.columns = 800, .rows = 600};
-  scene.lens = load;
+  scene.lens = [](const CameraSetup& setup) { return compile(read_prescription(*find_lens(setup.lens.file))); };
   scene.place = floor_and_wall;
 
-  FocusEditor editor(scene, {.name = "double_gauss_52mm_f1.8"});
+  FocusEditor editor(scene, {.lens = {.file = "double_gauss_52mm_f1.8"}});
   editor.apply(R"({"type": "add_point", "id": "floor", "pixel": [200, 590]})");
   print("one point", editor.state());
 
@@ -59,6 +53,9 @@ void run() {
 
   editor.apply(R"({"type": "undo"})");
   print("undo", editor.state());
+
+  editor.apply(R"({"type": "setup", "setup": {"f_number": 4}})");
+  print("f/4", editor.state());
   std::cout << "events: " << editor.log() << '\n';
 }
 

@@ -36,7 +36,7 @@ struct LensView {
   std::optional<petzval::FocalSurface> surface = {};
   petzval::ExpressiveLens expressive = {};
   bool first_order_only = false;  ///< a preview of a real lens
-  /// The camera of this lens, film and options, if it has been made already; empty: camera() makes one.
+  /// Returns the camera of this lens, film and options; empty: camera() makes the camera.
   std::function<const petzval::Camera&()> made = {};
 
   bool thin() const noexcept { return thin_diameter_mm > 0; }

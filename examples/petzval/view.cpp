@@ -87,11 +87,11 @@ int commands::view(int argc, char** argv) {
     if (thin->given()) {
       if (!lens.file.empty()) throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
       if (!(f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
-      window.session.lens = {.thin_mm = thin_mm, .f_number = f_number};
+      window.session.setup.lens.thin_mm = thin_mm, window.session.setup.f_number = f_number;
     } else {
-      window.session.lens.name = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file;
+      window.session.setup.lens.file = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file;
       if (f_number > 0) {
-        window.first_events = {{{"type", "f_number"}, {"f_number", f_number}}};
+        window.first_events = {{{"type", "setup"}, {"setup", {{"f_number", f_number}}}}};
       }
     }
     if (window.log_file.empty()) window.log_file = "petzval-view.json";

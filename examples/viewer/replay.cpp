@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <iostream>
@@ -21,17 +22,15 @@ using examples::Json;
 
 /// A line about the state for people.
 std::string in_words(const Session& session, const Json& state) {
-  const auto length = [](const Json& mm) {
-    return mm.is_null() ? std::string("infinity") : examples::number(mm.get<double>(), 5) + " mm";
-  };
   const petzval::FocusEditorState& editor = session.editor().state();
-  const std::string unserved = viewer::in_words(editor);
-  std::string line = "serve " + state["serve"].get<std::string>() + (unserved.empty() ? "" : " (" + unserved + ')') +
-                     ", focus " + length(state["focus_mm"]) + ", f/" +
-                     examples::number(state["f_number"].get<double>(), 3);
-  const double tilt = state["film"]["tilt_deg"].get<double>(), swing = state["film"]["swing_deg"].get<double>();
-  if (tilt != 0 || swing != 0) {
-    line += ", tilt " + examples::number(tilt, 3) + ", swing " + examples::number(swing, 3) + " degrees";
+  const std::string unserved = viewer::in_words(editor), mm = examples::number(editor.focus_mm, 5) + " mm";
+  std::string line = "serve " + std::string(name(editor.serve)) + (unserved.empty() ? "" : " (" + unserved + ')') +
+                     ", focus " + (std::isinf(editor.focus_mm) ? "infinity" : mm) + ", f/" +
+                     examples::number(editor.f_number, 3);
+  const petzval::Film& film = editor.setup.film;
+  if (film.tilted()) {
+    line += ", tilt " + examples::number(petzval::degrees(film.tilt_rad), 3) + ", swing " +
+            examples::number(petzval::degrees(film.swing_rad), 3) + " degrees";
   }
   for (const petzval::FocusMark& mark : editor.targets) {
     line += "; " + mark.id + ": ";
@@ -81,6 +80,9 @@ void replay(const ReplayOptions& options) {
         examples::write_text(points_file, points.dump(1) + '\n');
       }
       state["command"] = session.blur_command(points_file);
+      if (!options.out_folder.empty()) {
+        examples::write_text(stem.string() + "_setup.json", petzval::to_json(session.editor().state().setup) + '\n');
+      }
     }
     if (!error.empty()) state["error"] = error;
     if (options.json) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -14,10 +15,10 @@
 #include "layers/lit_scene.hpp"
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
-#include "support/focal_surface_setup.hpp"
 #include "support/json_input.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
@@ -51,11 +52,12 @@ std::string quoted(const std::string& word) {
 /// A file for a command line; "./" keeps a name from being read as a flag.
 std::string quoted_file(const std::string& file) { return quoted(file.starts_with('-') ? "./" + file : file); }
 
-/// A lens as the value of the key "lens".
-Json json_of(const petzval::FocusLensChoice& lens) {
-  if (!lens.name.empty()) return lens.name;
-  return {{"thin_mm", lens.thin_mm}, {"f_number", lens.f_number}};
-}
+using Input = lens_blur::InputFlags;
+/// Texts of a log, with their keys.
+constexpr std::pair<const char*, std::string Input::*> texts[] = {
+    {"scene", &Input::scene}, {"image", &Input::image},           {"depth", &Input::depth},
+    {"deep", &Input::deep},   {"depth_kind", &Input::depth_kind}, {"depth_unit", &Input::depth_unit},
+    {"white", &Input::white}};
 
 /// Memory of layers, with the depths of the last layer, and of a blurred picture, MB.
 double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& picture) {
@@ -90,11 +92,20 @@ std::string words_of(std::string_view status) {
 std::string in_words(const petzval::FocusEditorState& state) { return words_of(state.status); }
 std::string in_words(const petzval::FocusMark& mark) { return words_of(mark.status); }
 
+const std::string& lens_name(const petzval::FocusEditorState& state) {
+  const std::string& file = state.setup.lens.file;
+  return file.empty() ? state.lens.name() : file;
+}
+std::string lens_key(const petzval::FocusEditorState& state) {
+  const petzval::LensSource& lens = state.setup.lens;
+  return state.thin() ? "" : lens.file + '/' + lens.configuration + '/' + state.lens.name();
+}
+
 std::string no_picture(const Session& session, const Error& why) {
   const petzval::FocusEditorState& state = session.editor().state();
   const std::string reason = why.what();
   const bool too_wide = reason.find(" reach ") != std::string::npos;  // of layers or of their gathering
-  return "no picture through " + (state.thin() ? state.lens.name() : state.choice.name) + ": " +
+  return "no picture through " + lens_name(state) + ": " +
          (too_wide ? "its blur is too wide for this scene; stop down, focus elsewhere or choose another lens" : reason);
 }
 
@@ -107,38 +118,31 @@ Session::Session(const SessionOptions& options) : options_(options), input_(opti
   const renderer::Pose& pose = input_.pose();
   const glm::dvec3 back = glm::normalize(pose.position - pose.look_at),
                    right = glm::normalize(glm::cross(-back, pose.up));
-  const double angle = options.fov_deg > 0         ? petzval::radians(options.fov_deg)
-                       : options.lens.name.empty() ? petzval::radians(30)
-                                                   : 0;
+  const double fov_deg = options.fov_deg > 0 ? options.fov_deg : options.setup.lens.thin_mm > 0 ? 30 : 0;
   petzval::FocusScene scene{.columns = input_.columns(),
                             .rows = input_.rows(),
-                            .vertical_angle_rad = angle,
+                            .vertical_angle_rad = petzval::radians(fov_deg),
                             .position = pose.position,
                             .right = right,
                             .up = glm::cross(back, right),
                             .back = back};
-  scene.lens = [this](const petzval::FocusLensChoice& choice) { return load(choice); };
+  scene.lens = [this](const petzval::CameraSetup& setup) { return load(setup); };
   scene.place = [this](const petzval::Ray<double>& ray, double) { return place(ray); };
   if (input_.scene()) {
     scene.vertex = [this](std::size_t vertex, double) { return input_.scene()->vertex(vertex); };
   }
-  editor_.emplace(scene, options.lens);
+  if (options_.setup.lens.wavelengths_nm.empty()) options_.setup.lens.wavelengths_nm = {petzval::d_line_nm};
+  editor_.emplace(scene, options_.setup);
   update_camera();
   input_.refuse_near(nearest_mm_, petzval::first_order(editor_->state().lens).effective_focal_length);
 }
 
-petzval::Lens Session::load(const petzval::FocusLensChoice& choice) {
-  std::vector<double> wavelengths{petzval::d_line_nm};
-  if (choice.rgb) wavelengths.insert(wavelengths.end(), petzval::rgb_triple_nm.begin(), petzval::rgb_triple_nm.end());
-  if (choice.name.empty()) {
-    return petzval::compile(petzval::thin_elements(choice.thin_mm, choice.f_number), wavelengths,
-                            {.glasses = &petzval::glass_tables()});
-  }
-  const auto known = lenses_.find({choice.name, choice.rgb});
-  if (known != lenses_.end()) return known->second;
-  const petzval::Lens lens = examples::load_lens({.file = choice.name}, wavelengths).lens;
-  lenses_.emplace(std::pair{choice.name, choice.rgb}, lens);
-  return lens;
+petzval::Lens Session::load(const petzval::CameraSetup& setup) {
+  const petzval::LensSource& source = setup.lens;
+  if (source.file.empty()) return petzval::compile(setup);
+  const std::string key = petzval::to_json({.lens = source});
+  if (const auto known = lenses_.find(key); known != lenses_.end()) return known->second;
+  return lenses_.emplace(key, examples::load_lens(source, source.wavelengths_nm).lens).first->second;
 }
 
 std::optional<petzval::FocusPlace> Session::place(const petzval::Ray<double>& ray) const {
@@ -166,27 +170,18 @@ float Session::depth_mm(int column, int row) const {
   return w < 0 ? 0 : 1 / w;
 }
 
-lens_blur::LensView Session::view(bool from_points) const {
+lens_blur::LensView Session::view() const {
   const petzval::FocusEditorState& state = editor_->state();
-  const petzval::FocusLensChoice& choice = state.choice;
   lens_blur::LensView view{.lens = state.lens,
-                           .thin_diameter_mm = state.thin() ? choice.thin_mm / choice.f_number : 0,
-                           .film = state.film,
-                           .coloured = choice.rgb,
-                           .controls = state.bokeh,
+                           .thin_diameter_mm = state.setup.lens.thin_mm / state.f_number,
+                           .film = state.setup.film,
+                           .coloured = state.setup.lens.wavelengths_nm.size() == 4,
+                           .controls = state.setup.camera.bokeh,
                            .surface = state.surface,
-                           .expressive = state.expressive};
+                           .expressive = state.setup.camera.expressive,
+                           .made = state.camera};
   view.vertical_angle_rad = petzval::radians(options_.fov_deg > 0 ? options_.fov_deg : 30);
   view.focus_depth_mm = state.focus_mm + petzval::pupils(state.lens).entrance.z;
-  if (!(from_points && state.surface)) {
-    view.made = state.camera;
-  } else {
-    view.surface.reset();
-    petzval::CameraSetup setup{.focus_mm = state.focus_mm, .focal_surface = state.surface_options};
-    view.surface = examples::focal_surface_through(surface_points(), "points", setup, state.camera(),
-                                                   [](const Vec3<double>& p) { return p; });
-    if (!view.thin()) view.made = [own = view.camera()]() -> const petzval::Camera& { return own; };
-  }
   return view;
 }
 
@@ -198,25 +193,25 @@ double Session::widest_radius(const lens_blur::LensView& view) const {
 }
 
 void Session::update_camera() {
-  const petzval::FocusLensChoice& choice = editor_->state().choice;
-  if (camera_.columns > 0 && camera_lens_ == choice.name) return;
+  const std::string lens = lens_key(editor_->state());
+  if (camera_.columns > 0 && camera_lens_ == lens) return;
   radius_mm_ = 0;
-  camera_ = view(false).layers(1);
-  camera_lens_ = choice.name;
+  camera_ = view().layers(1);
+  camera_lens_ = lens;
   nearest_mm_ = input_.nearest_mm(camera_, options_.threads);
   if (!std::isfinite(nearest_mm_)) throw Error("layers: all depths are infinite; must have at least one finite depth");
 }
 
 bool Session::layers_are_too_small() const {
-  return layers_.count() == 0 || camera_lens_ != editor_->state().choice.name ||
-         widest_radius(view(false)) > radius_mm_ * (1 + 1e-9);
+  return layers_.count() == 0 || camera_lens_ != lens_key(editor_->state()) ||
+         widest_radius(view()) > radius_mm_ * (1 + 1e-9);
 }
 
 double Session::make_layers() {
   if (!layers_are_too_small()) return 0;
   const auto start = std::chrono::steady_clock::now();
   update_camera();
-  const lens_blur::LensView lens = view(false);
+  const lens_blur::LensView lens = view();
   const double radius = widest_radius(lens);
   radius_mm_ = 0;  // without layers until they are filled
   // With focus at infinity, the rays reach farthest: R f / depth for the nearest surface.
@@ -236,7 +231,7 @@ double Session::make_layers() {
 
 Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
-  lens_blur::LensView lens = view(false);
+  lens_blur::LensView lens = view();
   lens.first_order_only = first_order && !lens.thin();
   if (lens.first_order_only) lens.made = {};
   const petzval::LensRays table = lens.rays(camera_, {.rays = rays, .over_pixels = !input_.scene()},
@@ -251,7 +246,7 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
 
 Frame Session::still(const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
-  const lens_blur::LensView lens = view(true);
+  const lens_blur::LensView lens = view();
   const bool thin = lens.thin();
   const std::uint32_t side = input_.scene() ? 2 : 1;
   const lens_blur::RayPattern pattern{
@@ -307,7 +302,7 @@ std::vector<std::optional<petzval::Vec2<double>>> Session::handles() const {
       continue;
     }
     const petzval::Projection seen = camera.project(editor_->to_lens(*mark.place_mm));
-    if (seen.status != petzval::ProjectionStatus::not_visible) result.back() = state.film.raster(seen.film);
+    if (seen.status != petzval::ProjectionStatus::not_visible) result.back() = state.setup.film.raster(seen.film);
   }
   return result;
 }
@@ -317,10 +312,11 @@ petzval::RgbImage Session::sharp() const { return lens_blur::sharp_of(layers_, c
 Json Session::state_json(const Frame& frame) const {
   const petzval::FocusEditorState& state = editor_->state();
   Json json{{"film",
-             {{"z_mm", state.film.z()},
-              {"tilt_deg", examples::exact_degrees(state.film.tilt_rad)},
-              {"swing_deg", examples::exact_degrees(state.film.swing_rad)}}},
-            {"lens", json_of(state.choice)},
+             {{"z_mm", state.setup.film.z()},
+              {"tilt_deg", examples::exact_degrees(state.setup.film.tilt_rad)},
+              {"swing_deg", examples::exact_degrees(state.setup.film.swing_rad)}}},
+            {"lens", state.thin() ? Json{{"thin_mm", state.setup.lens.thin_mm}, {"f_number", state.f_number}}
+                                  : Json(lens_name(state))},
             {"f_number", state.f_number},
             {"focus_mm", examples::finite_or_null(state.focus_mm)},
             {"serve", name(state.serve)},
@@ -347,18 +343,14 @@ Json Session::state_json(const Frame& frame) const {
 Json Session::log() const {
   const lens_blur::InputFlags& input = options_.input;
   Json json;
-  for (const auto& [key, value] :
-       {std::pair{"scene", input.scene}, {"image", input.image}, {"depth", input.depth}, {"deep", input.deep}}) {
-    if (!value.empty()) json[key] = value;
+  for (const auto& [key, member] : texts) {
+    if (input.*member != Input().*member) json[key] = input.*member;
   }
-  if (!input.depth.empty() && input.depth_kind != "axial") json["depth_kind"] = input.depth_kind;
-  if (!input.depth_unit.empty()) json["depth_unit"] = input.depth_unit;
   if (input.near_mm > 0) {
     json["near_mm"] = input.near_mm;
     json["far_mm"] = examples::finite_or_null(input.far_mm);
   }
-  if (!input.white.empty()) json["white"] = input.white;
-  json["lens"] = json_of(options_.lens);
+  json["setup"] = Json::parse(petzval::to_json(options_.setup));
   json["size"] = {input_.columns(), input_.rows()};
   if (options_.fov_deg > 0) json["fov_deg"] = options_.fov_deg;
   json["events"] = Json::parse(editor_->log());
@@ -370,12 +362,12 @@ Json Session::surface_points() const {
   if (!state.surface) return nullptr;
   const double entrance_z = petzval::pupils(state.lens).entrance.z;
   Json points = Json::array();
-  for (const petzval::FocalPoint& point : state.surface_points) {
-    const petzval::Vec2<double> pixel = state.film.raster(point.film_point);
+  for (const petzval::FocalPoint& point : state.setup.focal_points) {
+    const petzval::Vec2<double> pixel = state.setup.film.raster(point.film_point);
     Json json{{"pixel", {pixel.x, pixel.y}}};
     if (point.inverse_distance) {
       json["distance_mm"] = examples::finite_or_null(1 / *point.inverse_distance - entrance_z);
-      json["blur_px"] = point.blur_mm / state.film.pixel_mm();
+      json["blur_px"] = point.blur_mm / state.setup.film.pixel_mm();
     }
     if (point.extent_stops) json["extent_stops"] = *point.extent_stops;
     json["weight"] = point.weight, json["fade"] = point.fade;
@@ -386,6 +378,7 @@ Json Session::surface_points() const {
 
 std::string Session::blur_command(const std::string& points_file) const {
   const petzval::FocusEditorState& state = editor_->state();
+  const petzval::CameraSetup& setup = state.setup;
   const lens_blur::InputFlags& input = options_.input;
   std::ostringstream out;
   out.imbue(std::locale::classic());
@@ -394,39 +387,37 @@ std::string Session::blur_command(const std::string& points_file) const {
   const auto add_if = [&](bool given, const char* flag, const std::string& value) {
     if (given) add(flag, value);
   };
-  add_if(!input.scene.empty(), "--scene", input.scene);
-  const auto add_file = [&](const char* flag, const std::string& file) {
-    if (!file.empty()) out << ' ' << flag << ' ' << quoted_file(file);
+  const auto add_file = [&](const std::string& flag, const std::string& file) {
+    out << ' ' << flag << ' ' << quoted_file(file);
   };
-  add_file("--image", input.image);
-  add_file("--deep", input.deep);
-  add_file("--depth", input.depth);
-  add_if(input.depth_kind != "axial", "--depth-kind", input.depth_kind);
-  add_if(!input.depth_unit.empty(), "--depth-unit", input.depth_unit);
+  for (const auto& [key, member] : texts) {
+    std::string flag = std::string("--") + key;
+    std::ranges::replace(flag, '_', '-');
+    if (input.*member != Input().*member) add_file(flag, input.*member);
+  }
   add_if(input.near_mm > 0, "--near", exact(input.near_mm));
   add_if(input.near_mm > 0, "--far", exact(input.far_mm));
-  add_if(!input.white.empty(), "--white", input.white);
   add_if(input_.scene() != nullptr, "--size", std::to_string(input_.columns()) + 'x' + std::to_string(input_.rows()));
   add_if(options_.layers != 4, "--layers", std::to_string(options_.layers));
   if (state.thin()) {
-    add("--thin-lens", exact(state.choice.thin_mm));
-    add("--f-number", exact(state.choice.f_number));
+    add("--thin-lens", exact(setup.lens.thin_mm));
   } else {
-    out << ' ' << quoted_file(state.choice.name);
-    add_if(state.f_number_set, "--f-number", exact(state.f_number));
+    out << ' ' << quoted_file(lens_name(state));
+    add_if(!setup.lens.configuration.empty(), "--configuration", setup.lens.configuration);
   }
+  add_if(setup.f_number.has_value(), "--f-number", exact(state.f_number));
   add_if(options_.fov_deg > 0, "--fov", exact(options_.fov_deg));
   add("--focus", exact(state.focus_mm));
-  add_if(state.film.tilt_rad != 0, "--tilt", exact(examples::exact_degrees(state.film.tilt_rad)));
-  add_if(state.film.swing_rad != 0, "--swing", exact(examples::exact_degrees(state.film.swing_rad)));
-  add_if(state.choice.rgb, "--wavelengths", "rgb");
+  add_if(setup.film.tilt_rad != 0, "--tilt", exact(examples::exact_degrees(setup.film.tilt_rad)));
+  add_if(setup.film.swing_rad != 0, "--swing", exact(examples::exact_degrees(setup.film.swing_rad)));
+  add_if(setup.lens.wavelengths_nm.size() == 4, "--wavelengths", "rgb");
   const petzval::Iris& iris = state.lens.iris();
   if (iris.blades > 0) {
     add("--blades", std::to_string(iris.blades));
     add_if(iris.roundness != 0, "--roundness", exact(iris.roundness));
     add_if(iris.rotation_rad != 0, "--iris-rotation", exact(examples::exact_degrees(iris.rotation_rad)));
   }
-  const petzval::BokehControls& bokeh = state.bokeh;
+  const auto& [bokeh, expressive] = std::tie(setup.camera.bokeh, setup.camera.expressive);
   add_if(bokeh.lens_ratio != 1, "--lens-ratio", exact(bokeh.lens_ratio));
   add_if(bokeh.rate_of_change != 0, "--rate-of-change", exact(bokeh.rate_of_change));
   if (bokeh.keep_light) out << " --keep-light";
@@ -434,18 +425,18 @@ std::string Session::blur_command(const std::string& points_file) const {
     add("--weight-distribution", exact(bokeh.weight_distribution));
     add("--weight-strength", exact(bokeh.weight_strength));
   }
-  for (const petzval::PowerKnot& knot : state.expressive.power) {
+  for (const petzval::PowerKnot& knot : expressive.power) {
     add("--power-spline", exact(knot.radius) + ':' + exact(knot.power));
   }
-  for (const petzval::FilmOffset& offset : state.expressive.film_offsets) {
+  for (const petzval::FilmOffset& offset : expressive.film_offsets) {
     add("--curvature-points",
         exact(offset.film_point.x) + ',' + exact(offset.film_point.y) + ':' + exact(offset.offset_mm));
   }
-  if (!state.expressive.dispersion.empty()) add("--dispersion", exact(state.expressive.dispersion.front()));
+  if (!expressive.dispersion.empty()) add("--dispersion", exact(expressive.dispersion.front()));
   if (state.surface) {
     add_file("--points", points_file);
-    add("--kind", std::string(name(state.surface_options.kind)));
-    add("--beta", exact(state.surface_options.beta));
+    add("--kind", std::string(name(setup.focal_surface.kind)));
+    add("--beta", exact(setup.focal_surface.beta));
   }
   out << " --out out";
   return out.str();
@@ -459,18 +450,15 @@ examples::Json events_of(const Json& log, const std::string& where) {
 SessionOptions options_of(const Json& log, const std::string& where) {
   examples::check_keys(where, log,
                        {"scene", "image", "depth", "deep", "depth_kind", "depth_unit", "near_mm", "far_mm", "white",
-                        "lens", "size", "fov_deg", "events"},
-                       "scene, image, depth, deep, depth_kind, depth_unit, near_mm, far_mm, white, lens, size, fov_deg "
-                       "and events");
+                        "lens", "setup", "size", "fov_deg", "events"},
+                       "scene, image, depth, deep, depth_kind, depth_unit, near_mm, far_mm, white, lens, setup, size, "
+                       "fov_deg and events");
   SessionOptions options;
-  const auto text = [&](const char* key, std::string& target) {
-    if (!log.contains(key)) return;
+  for (const auto& [key, member] : texts) {
+    if (!log.contains(key)) continue;
     if (!log[key].is_string()) examples::refuse(where + ": " + key, log[key], "a text");
-    target = log[key].get<std::string>();
-  };
-  text("scene", options.input.scene), text("image", options.input.image), text("depth", options.input.depth);
-  text("deep", options.input.deep), text("depth_kind", options.input.depth_kind), text("white", options.input.white);
-  text("depth_unit", options.input.depth_unit);
+    options.input.*member = log[key].get<std::string>();
+  }
   const examples::JsonEntry entry{where, log};
   if (const auto near = entry.number("near_mm", examples::positive_number)) {
     options.input.near_mm = *near;
@@ -479,20 +467,20 @@ SessionOptions options_of(const Json& log, const std::string& where) {
       options.input.far_mm = *entry.number("far_mm", examples::positive_number);
     }
   }
-  constexpr const char* lens_rule = "a name, or an object with thin_mm and f_number";
-  if (!log.contains("lens")) throw Error(where + ": lens is missing; must be " + lens_rule);
-  const Json& lens = log["lens"];
-  if (lens.is_string() && !lens.get<std::string>().empty()) {
-    options.lens.name = lens.get<std::string>();
-  } else if (lens.is_object()) {
-    const examples::JsonEntry thin{where + ": lens", lens};
-    thin.keys({"thin_mm", "f_number"}, "thin_mm and f_number");
-    const auto focal = thin.number("thin_mm", examples::positive_number),
-               f_number = thin.number("f_number", examples::positive_number);
-    if (!focal || !f_number) examples::refuse(where + ": lens", lens, lens_rule);
-    options.lens.thin_mm = *focal, options.lens.f_number = *f_number;
-  } else {
-    examples::refuse(where + ": lens", lens, lens_rule);
+  Json setup = log.value("setup", Json{{"format", "petzval-camera 2"}});
+  if (log.contains("lens") && log["lens"].is_object()) {
+    const Json& thin = log["lens"];
+    examples::check_keys(where + ": lens", thin, {"thin_mm", "f_number"}, "thin_mm and f_number");
+    setup["lens"] = {{"thin_mm", thin.value("thin_mm", Json())}};
+    setup["f_number"] = thin.value("f_number", Json());
+  } else if (log.contains("lens")) {
+    setup["lens"] = {{"file", log["lens"]}};
+  }
+  try {
+    options.setup = petzval::camera_setup(setup.dump(), "");
+  } catch (const Error& error) {
+    const std::string message = error.what();  // begins with a position in `setup`
+    throw Error(where + message.substr(message.find(": ")));
   }
   if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]")) {
     for (const double side : *size) {

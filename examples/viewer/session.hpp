@@ -25,8 +25,8 @@ namespace viewer {
 /// The scene, the lens and the resources of a session.
 struct SessionOptions {
   lens_blur::InputFlags input;
-  petzval::FocusLensChoice lens;
-  double fov_deg = 0;  ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
+  petzval::CameraSetup setup;  ///< of FocusEditor
+  double fov_deg = 0;          ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
   std::uint32_t layers = 4;
   int threads = 1;
   int file_columns = 0, file_rows = 0;  ///< required size of files; 0: any size
@@ -46,6 +46,11 @@ struct Frame {
 std::string in_words(const petzval::FocusEditorState& state);
 /// The status of a point in words; empty if the point is used.
 std::string in_words(const petzval::FocusMark& mark);
+
+/// The lens of a state as its file or its name.
+const std::string& lens_name(const petzval::FocusEditorState& state);
+/// The lens of a state as its file, configuration and name; empty: a thin lens.
+std::string lens_key(const petzval::FocusEditorState& state);
 
 class Session;
 /// The sentence for a state of which no picture can be computed.
@@ -98,20 +103,19 @@ class Session {
   examples::Json surface_points() const;
 
  private:
-  petzval::Lens load(const petzval::FocusLensChoice& choice);
+  petzval::Lens load(const petzval::CameraSetup& setup);
   std::optional<petzval::FocusPlace> place(const petzval::Ray<double>& ray) const;
-  /// The lens of the state. from_points: the focal surface goes through the numbers of surface_points(), as in blur.
-  lens_blur::LensView view(bool from_points) const;
+  lens_blur::LensView view() const;
   double widest_radius(const lens_blur::LensView& view) const;
   void update_camera();
 
   SessionOptions options_;
   lens_blur::LayerInput input_;
-  std::map<std::pair<std::string, bool>, petzval::Lens> lenses_;  ///< by name and colours
+  std::map<std::string, petzval::Lens> lenses_;  ///< by their source as JSON
   std::optional<petzval::FocusEditor> editor_;
 
   petzval::LayerCamera camera_;  ///< camera of the layers, without overscan
-  std::string camera_lens_;      ///< the lens for which camera_ was made
+  std::string camera_lens_;      ///< lens_key() of camera_
   double nearest_mm_ = 0;
   petzval::LayerSet layers_;
   double radius_mm_ = 0;  ///< radius of the pupil for which layers_ was made

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
@@ -42,6 +43,7 @@ constexpr double farthest_m = 1000;
 constexpr int frames_after_change = 4;
 /// Radius of the handle of a point, pixels of the screen.
 constexpr float handle_radius = 9;
+constexpr double degree = petzval::radians(1);
 
 constexpr ImU32 white = IM_COL32(255, 255, 255, 255), black = IM_COL32(0, 0, 0, 255),
                 yellow = IM_COL32(255, 210, 60, 255), green = IM_COL32(80, 230, 120, 255),
@@ -151,12 +153,12 @@ class Window {
   bool plays() const noexcept { return playing_; }
   /// The size of a window in which the picture has its own pixels, if the screen has room.
   std::pair<int, int> size() const {
-    const petzval::Film& film = worker_.snapshot()->state.film;
+    const petzval::Film& film = worker_.snapshot()->state.setup.film;
     constexpr float padding = 16, lines = 50;
     return {film.columns + static_cast<int>(panel_width + padding),
             film.rows + static_cast<int>(drawing_height + lines)};
   }
-  void dropped(const std::string& file) { send({{"type", "lens"}, {"lens", file}}); }
+  void dropped(const std::string& file) { send_lens({{"file", file}, {"thin_mm", nullptr}}, nullptr); }
   /// Taken from the events: Dear ImGui 1.86 misses a key that is pressed and released between two frames.
   void pressed(const SDL_KeyboardEvent& key) {
     if (ImGui::GetIO().WantTextInput || !shown_) return;
@@ -183,6 +185,9 @@ class Window {
     return ImGui::CollapsingHeader(title, open || opens(panel) ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   }
   void send(const Json& event) { worker_.send(event); }
+  static Json patch(const Json& setup) { return {{"type", "setup"}, {"setup", setup}}; }
+  /// f_number: null for wide open.
+  void send_lens(const Json& lens, const Json& f_number) { send(patch({{"lens", lens}, {"f_number", f_number}})); }
   /// Shows a pixel of the picture as `zoom` pixels of the screen, with a raster position in the middle; 0: everything.
   void zoom_to(int zoom, const petzval::Vec2<double>& middle) { zoom_ = zoom, middle_ = middle; }
 
@@ -207,12 +212,15 @@ class Window {
     }
     end_of_widget();
   }
-  void slider(const char* label, double value, double least, double most, const char* format, const char* type,
-              const char* key, ImGuiSliderFlags flags = 0) {
+  /// at: a JSON pointer into the set-up. unit: of the slider.
+  void slider(const char* label, double value, double least, double most, const char* format, const char* at,
+              double unit = 1, ImGuiSliderFlags flags = 0) {
     slider(
-        label, value, least, most, format,
+        label, value / unit, least, most, format,
         [&](double set) {
-          return Json{{"type", type}, {key, set}};
+          Json setup;
+          setup[Json::json_pointer(at)] = set * unit;
+          return patch(setup);
         },
         flags);
   }
@@ -220,8 +228,7 @@ class Window {
   void update_textures() {
     if (shown_->picture && shown_->pictures != pictures_) {
       pictures_ = shown_->pictures;
-      const petzval::Rgb8Image& image = *shown_->picture;
-      picture_.set(image);
+      picture_.set(*shown_->picture);
     }
     if (shown_->sharp && shown_->sharp != sharp_shown_) {
       sharp_shown_ = shown_->sharp;
@@ -239,7 +246,7 @@ class Window {
         map[4 * i + 2] = sharp ? 90 : b < 0 ? 0 : 255;
         map[4 * i + 3] = std::isnan(b) ? 0 : sharp ? 140 : static_cast<std::uint8_t>(150 * part);
       }
-      const int columns = shown_->state.film.columns;
+      const int columns = shown_->state.setup.film.columns;
       map_.set(columns, static_cast<int>(blur.size()) / columns, map);
     }
     if (shown_->bokeh.pixels > 0) {
@@ -254,7 +261,7 @@ class Window {
 
   // The picture with its handles.
   void picture() {
-    const petzval::Film& film = state().film;
+    const petzval::Film& film = state().setup.film;
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const float fit =
@@ -327,7 +334,7 @@ class Window {
   }
 
   void mouse_on_picture(const petzval::Vec2<double>& raster, const std::string& under) {
-    const petzval::Film& film = state().film;
+    const petzval::Film& film = state().setup.film;
     const bool inside = raster.x >= 0 && raster.x < film.columns && raster.y >= 0 && raster.y < film.rows;
     if (zoom_key_) zoom_to(*std::exchange(zoom_key_, std::nullopt), inside ? raster : looked_at_);
     if (!ImGui::IsItemHovered() && moved_.empty()) return;
@@ -346,22 +353,17 @@ class Window {
     if (ImGui::IsItemClicked(ImGuiMouseButton_Left)) {
       const bool by_distance = state().serve == petzval::FocusServe::distance;
       if (!under.empty()) {
-        selected_ = moved_ = under;
-        move_has_begun_ = false;
+        selected_ = under;
       } else if (by_distance && !state().targets.empty() && !ImGui::GetIO().KeyShift) {
         // One point: it moves to where the user clicks.
-        const std::string id = selected_.empty() ? state().targets.back().id : selected_;
-        send({{"type", "move_point"}, {"id", id}, {"pixel", pixel()}});
-        selected_ = moved_ = id;
-        move_has_begun_ = true;
+        if (selected_.empty()) selected_ = state().targets.back().id;
+        send({{"type", "move_point"}, {"id", selected_}, {"pixel", pixel()}});
       } else {
-        std::string id;
-        for (int k = 1; id.empty() || has_point(id); ++k) id = std::to_string(k);
-        send({{"type", "add_point"}, {"id", id}, {"pixel", pixel()}});
-        selected_ = moved_ = id;
-        move_has_begun_ = true;
+        selected_.clear();
+        for (int k = 1; selected_.empty() || has_point(selected_); ++k) selected_ = std::to_string(k);
+        send({{"type", "add_point"}, {"id", selected_}, {"pixel", pixel()}});
       }
-      pressed_at_ = raster;
+      moved_ = selected_, move_has_begun_ = under.empty(), pressed_at_ = raster;
     }
     if (!moved_.empty() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       if (raster.x == pressed_at_.x && raster.y == pressed_at_.y) return;
@@ -381,7 +383,7 @@ class Window {
     for (const petzval::FocusMark& mark : state().targets) {
       if (mark.raster && (!result || mark.id == selected_)) result = mark.raster;
     }
-    return result.value_or(petzval::Vec2<double>(state().film.columns / 2, state().film.rows / 2));
+    return result.value_or(petzval::Vec2<double>(state().setup.film.columns / 2, state().setup.film.rows / 2));
   }
 
   bool has_point(const std::string& id) const {
@@ -480,17 +482,16 @@ class Window {
         "distance (m)", infinite ? farthest_m : state().focus_mm / 1000, 0.1, farthest_m,
         infinite ? "infinity" : "%.3f",
         [](double m) {
-          return Json{{"type", "focus"}, {"distance_mm", m < farthest_m ? Json(1000 * m) : Json(nullptr)}};
+          return patch({{"focus_mm", m < farthest_m ? Json(1000 * m) : Json(nullptr)}});
         },
         ImGuiSliderFlags_Logarithmic);
     if (state().serve == FocusServe::surface) {
-      slider("beta", state().surface_options.beta, 1, 8, "%.1f", [](double beta) {
-        return Json{{"type", "serve"}, {"by", "surface"}, {"beta", beta}};
-      });
+      slider("beta", state().setup.focal_surface.beta, 1, 8, "%.1f", "/focal_surface/beta");
       ImGui::Dummy({1, ImGui::GetFrameHeight()});
     } else {
-      slider("tilt (deg)", petzval::degrees(state().film.tilt_rad), -20, 20, "%.2f", "tilt", "tilt_deg");
-      slider("swing (deg)", petzval::degrees(state().film.swing_rad), -20, 20, "%.2f", "tilt", "swing_deg");
+      const petzval::Film& film = state().setup.film;
+      slider("tilt (deg)", film.tilt_rad, -20, 20, "%.2f", "/film/tilt_rad", degree);
+      slider("swing (deg)", film.swing_rad, -20, 20, "%.2f", "/film/swing_rad", degree);
     }
     bool nearer = nearer_, fade = fade_;
     if (ImGui::Checkbox("nearer points weigh more", &nearer)) {
@@ -513,7 +514,7 @@ class Window {
   }
 
   void lens_panel() {
-    const std::string shown = state().thin() ? state().lens.name() : state().choice.name;
+    const std::string& shown = lens_name(state());
     const ImVec2 thumbnail{110, 44};
     if (list_width_ == 0) {
       for (const ShippedLens& lens : lenses_)
@@ -525,8 +526,8 @@ class Window {
       for (ShippedLens& lens : lenses_) {
         ImGui::PushID(lens.id.c_str());
         const ImVec2 corner = ImGui::GetCursorScreenPos();
-        if (ImGui::Selectable("##lens", lens.id == state().choice.name, 0, {0, thumbnail.y})) {
-          send({{"type", "lens"}, {"lens", lens.id}});
+        if (ImGui::Selectable("##lens", lens.id == state().setup.lens.file, 0, {0, thumbnail.y})) {
+          send_lens({{"file", lens.id}, {"thin_mm", nullptr}}, nullptr);
         }
         if (ImGui::IsItemVisible()) {
           if (!lens.section) lens.section = drawing_of(lens.id);
@@ -540,50 +541,62 @@ class Window {
     }
     ImGui::TextDisabled("or drop a lens file into the window");
     if (ImGui::Button("thin lens, 50 mm f/2")) {
-      send({{"type", "lens"}, {"lens", {{"thin_mm", 50}, {"f_number", 2}}}});
+      send_lens({{"thin_mm", 50}, {"file", nullptr}}, 2);
     }
-    slider("f-number", state().f_number, 0.5, 32, "f/%.2f", "f_number", "f_number", ImGuiSliderFlags_Logarithmic);
+    slider("f-number", state().f_number, 0.5, 32, "f/%.2f", "/f_number", 1, ImGuiSliderFlags_Logarithmic);
     const petzval::Iris& iris = state().lens.iris();
     int blades = iris.blades;
     if (ImGui::SliderInt("blades", &blades, 0, 12, blades < 3 ? "round" : "%d")) {
-      send_from_widget("blades", {{"type", "iris"}, {"blades", blades < 3 ? 0 : blades}});
+      send_from_widget("blades", patch({{"iris", {{"blades", blades < 3 ? 0 : blades}}}}));
     }
     end_of_widget();
     ImGui::BeginDisabled(iris.blades == 0);
-    slider("roundness", iris.roundness, -1, 1, "%.2f", "iris", "roundness");
-    slider("rotation (deg)", petzval::degrees(iris.rotation_rad), -180, 180, "%.0f", "iris", "rotation_deg");
+    slider("roundness", iris.roundness, -1, 1, "%.2f", "/iris/roundness");
+    slider("rotation (deg)", iris.rotation_rad, -180, 180, "%.0f", "/iris/rotation_rad", degree);
     ImGui::EndDisabled();
-    bool rgb = state().choice.rgb;
-    if (ImGui::Checkbox("colour of the lens", &rgb)) send({{"type", "colour"}, {"rgb", rgb}});
+    bool rgb = state().setup.lens.wavelengths_nm.size() == 4;
+    if (ImGui::Checkbox("colour of the lens", &rgb)) {
+      std::vector<double> nm{petzval::d_line_nm};
+      if (rgb) nm.insert(nm.end(), petzval::rgb_triple_nm.begin(), petzval::rgb_triple_nm.end());
+      send(patch({{"lens", {{"wavelengths_nm", nm}}}}));
+    }
   }
 
   void bokeh_panel() {
-    const petzval::BokehControls& bokeh = state().bokeh;
-    slider("lens ratio", bokeh.lens_ratio, 0.2, 2, "%.2f", "bokeh", "lens_ratio");
-    slider("rate of change", bokeh.rate_of_change, 0, 2, "%.2f", "bokeh", "rate_of_change");
-    slider("rim weight", bokeh.weight_distribution, -10, 10, "%.2f", "bokeh", "weight_distribution");
-    slider("strength", bokeh.weight_strength, -1, 1, "%.2f", "bokeh", "weight_strength");
+    const petzval::BokehControls& bokeh = state().setup.camera.bokeh;
+    slider("lens ratio", bokeh.lens_ratio, 0.2, 2, "%.2f", "/camera/bokeh/lens_ratio");
+    slider("rate of change", bokeh.rate_of_change, 0, 2, "%.2f", "/camera/bokeh/rate_of_change");
+    slider("rim weight", bokeh.weight_distribution, -10, 10, "%.2f", "/camera/bokeh/weight_distribution");
+    slider("strength", bokeh.weight_strength, -1, 1, "%.2f", "/camera/bokeh/weight_strength");
     bool keep = bokeh.keep_light;
-    if (ImGui::Checkbox("keep light", &keep)) send({{"type", "bokeh"}, {"keep_light", keep}});
+    if (ImGui::Checkbox("keep light", &keep)) send(patch({{"camera", {{"bokeh", {{"keep_light", keep}}}}}}));
   }
 
   void aberrations_panel() {
-    const petzval::ExpressiveLens& lens = state().expressive;
+    const petzval::ExpressiveLens& lens = state().setup.camera.expressive;
     const double rim = lens.power.empty() ? 0 : lens.power.back().power - 1;
-    slider("spherical (%)", 100 * rim, -5, 5, "%.2f", [](double percent) {
-      Json spline = Json::array();
-      if (percent != 0) spline = {{0, 1}, {0.7, 1 + percent / 200}, {1, 1 + percent / 100}};
-      return Json{{"type", "expressive"}, {"power_spline", spline}};
+    const auto expressive = [](const char* key, const Json& list) {
+      return patch({{"camera", {{"expressive", {{key, list}}}}}});
+    };
+    slider("spherical (%)", 100 * rim, -5, 5, "%.2f", [&](double percent) {
+      const auto knot = [](double radius, double power) { return Json{{"radius", radius}, {"power", power}}; };
+      Json power = Json::array();
+      if (percent != 0) power = {knot(0, 1), knot(0.7, 1 + percent / 200), knot(1, 1 + percent / 100)};
+      return expressive("power", power);
     });
     const double bend = lens.film_offsets.empty() ? 0 : lens.film_offsets.back().offset_mm;
     slider("curvature (mm)", bend, -2, 2, "%.2f", [&](double mm) {
-      const double x = state().film.width_mm / 2, y = state().film.height_mm / 2;
+      const auto at = [](double x, double y, double offset) {
+        return Json{{"film_point", {{"x", x}, {"y", y}}}, {"offset_mm", offset}};
+      };
+      const double x = state().setup.film.width_mm / 2, y = state().setup.film.height_mm / 2;
       Json points = Json::array();
-      if (mm != 0) points = {{0, 0, 0}, {x, y, mm}, {-x, y, mm}, {x, -y, mm}, {-x, -y, mm}};
-      return Json{{"type", "expressive"}, {"curvature_points", points}};
+      if (mm != 0) points = {at(0, 0, 0), at(x, y, mm), at(-x, y, mm), at(x, -y, mm), at(-x, -y, mm)};
+      return expressive("film_offsets", points);
     });
-    slider("axial colour", lens.dispersion.empty() ? 1 : lens.dispersion.front(), 0, 10, "%.1f", "expressive",
-           "dispersion");
+    slider("axial colour", lens.dispersion.empty() ? 1 : lens.dispersion.front(), 0, 10, "%.1f", [&](double factor) {
+      return expressive("dispersion", factor == 1 ? Json::array() : Json::array({factor}));
+    });
     slider("of the real lens", from_lens_, 0, 4, "%.2f", [this](double part) {
       from_lens_ = part;
       return Json{{"type", "expressive"}, {"from_lens", part}};
@@ -591,7 +604,7 @@ class Window {
   }
 
   void time_panel() {
-    slider("time (s)", state().time_s, 0, 10, "%.2f", "time", "time_s");
+    slider("time (s)", state().time_s, 0, 10, "%.2f", [](double s) { return Json{{"type", "time"}, {"time_s", s}}; });
     // A mark for each key below the slider.
     const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
     const float width = 0.55f * panel_width;

@@ -27,8 +27,8 @@ constexpr auto patience = std::chrono::milliseconds(500);
 
 /// The plane of focus of a tilted film in words.
 std::string plane_in_words(const petzval::FocusEditorState& state) {
-  if (!state.film.tilted()) return "";
-  const auto plane = petzval::focus_plane(petzval::thick_lens(state.lens), state.film);
+  if (!state.setup.film.tilted()) return "";
+  const auto plane = petzval::focus_plane(petzval::thick_lens(state.lens), state.setup.film);
   if (!plane) return "plane of focus: at infinity";
   std::string text = "plane of focus: turned by " +
                      examples::number(petzval::degrees(std::acos(std::min(1.0, plane->plane.normal.z))), 3) +
@@ -44,7 +44,7 @@ std::string plane_in_words(const petzval::FocusEditorState& state) {
 
 Worker::Worker(const SessionOptions& options, const Json& first_events) : session_(options) {
   session_.make_layers();
-  const petzval::Film& film = session_.editor().state().film;
+  const petzval::Film& film = session_.editor().state().setup.film;
   const petzval::Vec2<double> middle(film.columns / 2, film.rows / 2);
   if (first_events.is_null()) {
     session_.editor().apply(Json{{"type", "add_point"}, {"id", "1"}, {"pixel", {middle.x, middle.y}}}.dump());
@@ -185,11 +185,11 @@ void Worker::look() {
   }
   const petzval::FocusEditorState& state = session_.editor().state();
   Snapshot next = *snapshot();
-  next.section = section_of(state.lens, state.film);
+  next.section = section_of(state.lens, state.setup.film);
   next.bokeh = {};
   try {
     const petzval::Camera& camera = state.camera();
-    next.section.rays = rays_through(camera, state.film.point(raster.x, raster.y));
+    next.section.rays = rays_through(camera, state.setup.film.point(raster.x, raster.y));
     const float depth = session_.depth_mm(static_cast<int>(raster.x), static_cast<int>(raster.y));
     if (depth > 0) next.bokeh = bokeh_of(camera, raster, static_cast<double>(depth), session_.focal_px());
   } catch (const petzval::Error&) {
@@ -216,12 +216,13 @@ void Worker::export_files(const std::filesystem::path& folder) {
     const Frame still = session_.still();
     examples::write_picture(still.picture, petzval::to_srgb8(still.picture), {"exr", "png"}, folder / "view");
     examples::write_text(folder / "view.json", session_.log().dump(1) + '\n');
+    examples::write_text(folder / "setup.json", petzval::to_json(session_.editor().state().setup) + '\n');
     const Json points = session_.surface_points();
     const std::string points_file = (folder / "points.json").string();
     if (!points.is_null()) examples::write_text(points_file, points.dump(1) + '\n');
     examples::write_text(folder / "blur.sh", session_.blur_command(points_file) + '\n');
     next.message = "written to " + std::filesystem::absolute(folder).lexically_normal().string() +
-                   ": view.png, view.exr, view.json (events), blur.sh (command line)";
+                   ": view.png, view.exr, view.json (events), setup.json (camera), blur.sh (command line)";
   } catch (const petzval::Error& error) {
     next.message = error.what();
   }
@@ -238,13 +239,6 @@ void Worker::map_blur() {
     next.histogram[static_cast<std::size_t>(std::clamp(value, -20.0f, 20.0f) + 20.5f)] += 1;
   }
   next.blur = std::make_shared<const std::vector<float>>(std::move(blur));
-  publish(std::move(next));
-}
-
-/// The picture of a pinhole.
-void Worker::show_sharp() {
-  Snapshot next = *snapshot();
-  next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
   publish(std::move(next));
 }
 
@@ -275,7 +269,7 @@ void Worker::run() {
       if (layers_first && step < all_steps) session_.make_layers();
       if (step == 0) {
         // The rays of a new real lens take longer to set up: meanwhile a picture without its aberrations.
-        const std::string& lens = session_.editor().state().choice.name;
+        const std::string lens = lens_key(session_.editor().state());
         if (lens != std::exchange(lens_shown_, lens)) show(session_.frame(ray_steps[0], true, stop));
       }
       if (step < still_step) {
@@ -295,7 +289,11 @@ void Worker::run() {
       }
       if (step == 1) mapped = false;
       if (!mapped && (step == 2 || (step == 1 && map_shown_))) map_blur(), mapped = true;
-      if (step == 2) show_sharp();
+      if (step == 2) {
+        Snapshot next = *snapshot();
+        next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
+        publish(std::move(next));
+      }
       if (looks && step > 0) look();
     } catch (const petzval::Cancelled&) {
       // The next event has come.

@@ -71,7 +71,6 @@ class Worker {
   bool apply_events();
   std::stop_token start_work();
   void map_blur();
-  void show_sharp();
   void show_state(Snapshot next);
   void show(Frame frame);
   void look();

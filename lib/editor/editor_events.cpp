@@ -2,356 +2,238 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <initializer_list>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "core/text.hpp"
 #include "editor_settings.hpp"
 #include "focus/targets.hpp"
+#include "io/json_members.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::editor_detail {
+
+using namespace io_detail;
+using nlohmann::json;
+
+template <Is<PointValues> S, class Of>
+void members(S& values, const Of& of) {
+  constexpr Range stops{-focus_detail::largest_extent, focus_detail::largest_extent, "a number from -20 to 20"};
+  of("weight", values.weight, not_negative), of("blur_px", values.blur_px);
+  of("extent_stops", values.extent_stops, stops);
+}
+
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr Range times{-1e9, 1e9, "a number from -1e9 to 1e9"};
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double largest_tilt_deg = 60;
-
-/// A range of numbers, both ends included, and the words for messages.
-struct Range {
-  double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();
-  const char* words = "a finite number";
-};
-constexpr Range any_number{};
-constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a positive number"};
-constexpr Range not_negative{0, std::numeric_limits<double>::max(), "a number of 0 or more"};
-
-std::string shown(const Json& value) {
-  return std::string(beginning(value.dump(-1, ' ', false, Json::error_handler_t::replace), 80));
-}
-
-/// An event, for reading its keys. Every key must have been read at the end.
-class Event {
- public:
-  explicit Event(const Json& json) : json_(json), type_(type_of(json)), read_{"type"} {}
-
-  const std::string& type() const noexcept { return type_; }
-
-  /// The value of a key; null if the event does not have the key.
-  const Json* find(const char* key) {
-    read_.emplace_back(key);
-    const auto at = json_.find(key);
-    return at == json_.end() ? nullptr : &*at;
-  }
-  const Json& at(const char* key, const char* rule) {
-    if (const Json* const value = find(key)) return *value;
-    throw Error(type_ + ": " + key + " is missing; must be " + rule);
-  }
-  [[noreturn]] void refuse(const std::string& key, const Json& value, const std::string& rule) const {
-    throw Error(type_ + ": " + key + " = " + shown(value) + "; must be " + rule);
-  }
-
-  double number(const char* key, const Json& value, const Range& range) const {
-    if (!value.is_number()) refuse(key, value, range.words);
-    const double number = value.get<double>();
-    if (!(number >= range.least && number <= range.most)) refuse(key, value, range.words);
-    return number;
-  }
-  void set(const char* key, double& target, const Range& range = any_number) {
-    if (const Json* const value = find(key)) target = number(key, *value, range);
-  }
-  void set(const char* key, bool& target) {
-    const Json* const value = find(key);
-    if (!value) return;
-    if (!value->is_boolean()) refuse(key, *value, "true or false");
-    target = value->get<bool>();
-  }
-  std::string text(const char* key, const Json& value) const {
-    if (!value.is_string()) refuse(key, value, "a text");
-    return value.get<std::string>();
-  }
-  std::vector<double> numbers(const char* key, const Json& value, std::size_t count) const {
-    const std::string rule = "a list of " + std::to_string(count) + " finite numbers";
-    if (!value.is_array() || value.size() != count) refuse(key, value, rule);
-    std::vector<double> result;
-    for (const Json& entry : value) {
-      if (!entry.is_number()) refuse(key, value, rule);
-      result.push_back(entry.get<double>());
-    }
-    return result;
-  }
-  /// Rows of numbers, "[[1, 2], [3, 4]]".
-  std::vector<std::vector<double>> rows(const char* key, const Json& value, std::size_t columns) const {
-    if (!value.is_array()) refuse(key, value, "a list of lists of " + std::to_string(columns) + " numbers");
-    std::vector<std::vector<double>> result;
-    for (const Json& row : value) result.push_back(numbers(key, row, columns));
-    return result;
-  }
-
-  /// Refuses keys that were not read.
-  void finish() const {
-    for (const auto& [key, value] : json_.items()) {
-      if (std::ranges::find(read_, key) != read_.end()) continue;
-      std::string known;
-      for (const std::string& name : read_) known += (known.empty() ? "" : ", ") + name;
-      throw Error(type_ + ": key \"" + std::string(beginning(key, 60)) +
-                  "\" is unknown; must be a key of this event: " + known);
-    }
-  }
-
- private:
-  const Json& json_;
-  std::string type_;
-  std::vector<std::string> read_;
-};
-
-/// Scene and state for the events, besides the settings.
-struct Context {
+/// An event, and the settings that it changes.
+struct Event {
+  const JsonPart& part;
   const FocusScene& scene;
-  const FocusEditorState& state;
+  const FocusEditorState& state;  ///< before the event
+  EditorSettings& settings;
+  bool continues = false;
+
+  /// Reads the keys of the event. Refuses all others.
+  void read(std::vector<JsonField> fields) {
+    fields.emplace_back("type", [](const JsonPart&) {});
+    fields.emplace_back("continues", continues);
+    part.read(fields);
+  }
 };
 
-struct Id {
-  std::string text;
-  bool is_number = false;
-};
-
-Id id_of(const Event& event, const Json& value) {
-  if (value.is_number_integer()) return {value.dump(), true};
-  if (!value.is_string() || value.get<std::string>().empty()) event.refuse("id", value, "a text or a whole number");
-  return {value.get<std::string>()};
+JsonField number(std::string_view key, double& to, const Range& range, bool needed = false) {
+  return {key, [&to, range](const JsonPart& part) { read_value(part, to, range); }, needed};
 }
 
-EditorPoint& point_of(Event& event, EditorSettings& settings) {
-  const Json& value = event.at("id", "the id of a point");
-  const Id id = id_of(event, value);
-  const auto found =
-      std::ranges::find_if(settings.points, [&](const Shared<EditorPoint>& point) { return point->id == id.text; });
-  if (found != settings.points.end()) return found->edit();
-  std::string known;
-  for (const auto& point : settings.points) known += (known.empty() ? "" : ", ") + point->id;
-  event.refuse("id", value, known.empty() ? "the id of a point, but no point exists" : "the id of a point: " + known);
+/// Reads a list of as many numbers as there are ranges.
+void read_numbers(const JsonPart& part, std::vector<double>& to, std::initializer_list<Range> ranges) {
+  if (part.json().size() != ranges.size()) part.refuse("a list of " + std::to_string(ranges.size()) + " numbers");
+  const Range* range = ranges.begin();
+  part.each([&](const JsonPart& entry) { read_value(entry, to.emplace_back(), *range++); });
 }
 
-/// Reads the place of a point: a pixel, or a position in the scene.
-std::optional<FocusPlace> place_of(Event& event, const Context& context, double time) {
-  const FocusScene& scene = context.scene;
-  const Json* const pixel = event.find("pixel");
-  const Json* const position = event.find("position_mm");
+void read_id(const JsonPart& part, EditorPoint& point) {
+  point.id_is_number = part.json().is_number_integer();
+  point.id = point.id_is_number ? part.json().dump() : part.json().is_string() ? part.text() : "";
+  if (point.id.empty()) part.refuse("a text or a whole number");
+}
+
+auto find_point(EditorSettings& settings, const std::string& id) {
+  return std::ranges::find_if(settings.points, [&](const Shared<EditorPoint>& point) { return point->id == id; });
+}
+
+/// The key "id" of a point that exists.
+JsonField id_of_point(EditorSettings& settings, EditorPoint*& found) {
+  const auto read = [&](const JsonPart& part) {
+    EditorPoint given;
+    read_id(part, given);
+    const auto at = find_point(settings, given.id);
+    if (at != settings.points.end()) return void(found = &at->edit());
+    std::string known;
+    for (const auto& point : settings.points) known += (known.empty() ? ": " : ", ") + point->id;
+    part.refuse("the id of a point" + (known.empty() ? ", but no point exists" : known));
+  };
+  return {"id", read, required};
+}
+
+/// The keys of the place of a point: a pixel, or a position in the scene.
+struct PlaceKeys {
+  std::vector<double> pixel, position;
   bool at_infinity = false;
-  event.set("at_infinity", at_infinity);
-  if ((pixel != nullptr) == (position != nullptr)) {
-    throw Error(event.type() + ": has " + (pixel ? "both of" : "neither of") +
-                " pixel and position_mm; must have either pixel or position_mm");
+
+  void add_to(std::vector<JsonField>& fields, const FocusScene& scene) {
+    fields.emplace_back("pixel", [this, &scene](const JsonPart& part) {
+      const auto upto = [](int most) { return "a number from 0 to " + std::to_string(most); };
+      const std::string columns = upto(scene.columns), rows = upto(scene.rows);
+      read_numbers(part, pixel, {{0, 1. * scene.columns, columns.c_str()}, {0, 1. * scene.rows, rows.c_str()}});
+      if (!scene.place) part.fail("must be left out: the scene has no depths");
+    });
+    fields.emplace_back("position_mm", [this](const JsonPart& part) {
+      read_numbers(part, position, {any_number, any_number, any_number});
+    });
+    fields.emplace_back("at_infinity", at_infinity);
   }
-  if (pixel && at_infinity) event.refuse("at_infinity", true, "left out with pixel");
-  if (position) {
-    const std::vector<double> at = event.numbers("position_mm", *position, 3);
-    if (at_infinity && at[0] == 0 && at[1] == 0 && at[2] == 0) {
-      event.refuse("position_mm", *position, "a direction, not 0, with at_infinity");
+};
+
+std::optional<FocusPlace> place_of(const Event& event, const PlaceKeys& keys) {
+  const std::vector<double>&pixel = keys.pixel, &at = keys.position;
+  if (pixel.empty() == at.empty()) {
+    event.part.fail(std::string("has ") + (pixel.empty() ? "neither of" : "both of") +
+                    " pixel and position_mm; must have either pixel or position_mm");
+  }
+  if (!at.empty()) {
+    if (keys.at_infinity && at == std::vector<double>(3, 0)) {
+      event.part.fail_at("position_mm", "position_mm = 0, 0, 0; must be a direction, not 0, with at_infinity");
     }
-    return FocusPlace{.point = {{at[0], at[1], at[2]}, at_infinity}};
+    return FocusPlace{.point = {{at[0], at[1], at[2]}, keys.at_infinity}};
   }
-  const std::vector<double> at = event.numbers("pixel", *pixel, 2);
-  if (!(at[0] >= 0 && at[0] <= scene.columns && at[1] >= 0 && at[1] <= scene.rows)) {
-    event.refuse(
-        "pixel", *pixel,
-        "within the picture, [0, 0] to [" + std::to_string(scene.columns) + ", " + std::to_string(scene.rows) + "]");
-  }
-  if (!scene.place) event.refuse("pixel", *pixel, "left out: the scene has no depths");
-  const FocusEditorState& state = context.state;
+  if (keys.at_infinity) event.part.fail_at("at_infinity", "at_infinity = true; must be left out with pixel");
+  const FocusEditorState& state = event.state;
   // The chief ray: the middle of the pupil.
-  const CameraRay chief = state.camera().sample({.film = state.film.point(at[0], at[1]), .pupil_u = 0, .pupil_v = 0});
+  const CameraRay chief =
+      state.camera().sample({.film = state.setup.film.point(pixel[0], pixel[1]), .pupil_u = 0, .pupil_v = 0});
   if (!chief) return {};
   const double entrance_z = pupils(state.lens).entrance.z;
-  const Vec3<double> origin = to_scene(scene, entrance_z, chief.ray.origin);
-  return scene.place({origin, to_scene(scene, entrance_z, chief.ray.origin + chief.ray.direction) - origin}, time);
+  const Vec3<double> origin = to_scene(event.scene, entrance_z, chief.ray.origin);
+  const Vec3<double> along = to_scene(event.scene, entrance_z, chief.ray.origin + chief.ray.direction) - origin;
+  return event.scene.place({origin, along}, event.settings.time_s);
 }
 
-void read_values(Event& event, PointValues& values) {
-  event.set("weight", values.weight, not_negative);
-  event.set("blur_px", values.blur_px);
-  if (const Json* const extent = event.find("extent_stops")) {
-    if (extent->is_null()) {
-      values.extent_stops.reset();
-    } else {
-      constexpr Range stops{-focus_detail::largest_extent, focus_detail::largest_extent, "a number from -20 to 20"};
-      values.extent_stops = event.number("extent_stops", *extent, stops);
-    }
-  }
-}
-
-void add_point(Event& event, const Context& context, EditorSettings& settings) {
+void add_point(Event& event) {
+  EditorSettings& settings = event.settings;
   EditorPoint point;
-  if (const Json* const id = event.find("id")) {
-    const Id read = id_of(event, *id);
-    point.id = read.text, point.id_is_number = read.is_number;
-  }
-  const auto taken = [&](const std::string& id) {
-    return std::ranges::any_of(settings.points, [&](const Shared<EditorPoint>& other) { return other->id == id; });
-  };
-  if (!point.id.empty() && taken(point.id)) {
-    event.refuse("id", point.id, "an unused id");
-  }
-  while (point.id.empty() || taken(point.id)) point.id = std::to_string(++settings.points_added);
-  point.now.place = place_of(event, context, settings.time_s);
-  read_values(event, point.now);
+  PlaceKeys keys;
+  const auto taken = [&] { return find_point(settings, point.id) != settings.points.end(); };
+  std::vector<JsonField> fields{{"id", [&](const JsonPart& part) {
+                                   read_id(part, point);
+                                   if (taken()) part.refuse("an unused id");
+                                 }}};
+  keys.add_to(fields, event.scene), members(point.now, MemberReader{fields});
+  event.read(fields);
+  while (point.id.empty() || taken()) point.id = std::to_string(++settings.points_added);
+  point.now.place = place_of(event, keys);
   point.fade = FadeFilter(settings.fade_s);
   settings.active = point.id;
   settings.points.emplace_back(std::move(point));
 }
 
-void move_point(Event& event, const Context& context, EditorSettings& settings) {
-  EditorPoint& point = point_of(event, settings);
-  point.now.place = place_of(event, context, settings.time_s);
-  point.by_hand = true;
-  point.fade = FadeFilter(settings.fade_s);
-  settings.active = point.id;
+void move_point(Event& event) {
+  EditorPoint* point = nullptr;
+  PlaceKeys keys;
+  std::vector<JsonField> fields{id_of_point(event.settings, point)};
+  keys.add_to(fields, event.scene);
+  event.read(fields);
+  point->now.place = place_of(event, keys);
+  point->by_hand = true;
+  point->fade = FadeFilter(event.settings.fade_s);
+  event.settings.active = point->id;
 }
 
-void set_point(Event& event, const Context&, EditorSettings& settings) {
-  EditorPoint& point = point_of(event, settings);
-  read_values(event, point.now);
-  point.by_hand = true;
+void set_point(Event& event) {
+  EditorPoint* point = nullptr;
+  PointValues values;
+  const JsonField id = id_of_point(event.settings, point);
+  std::vector<JsonField> fields{{"id", [&](const JsonPart& part) { id.set(part), values = point->now; }, required}};
+  members(values, MemberReader{fields});
+  event.read(fields);
+  point->now = values;
+  point->by_hand = true;
 }
 
-void remove_point(Event& event, const Context&, EditorSettings& settings) {
-  const std::string id = point_of(event, settings).id;
-  std::erase_if(settings.points, [&](const Shared<EditorPoint>& point) { return point->id == id; });
-  if (settings.active == id) settings.active.clear();
+void remove_point(Event& event) {
+  EditorSettings& settings = event.settings;
+  EditorPoint* point = nullptr;
+  event.read({id_of_point(settings, point)});
+  if (settings.active == point->id) settings.active.clear();
+  settings.points.erase(find_point(settings, std::string(point->id)));
 }
 
-void serve(Event& event, const Context&, EditorSettings& settings) {
-  const Json& by = event.at("by", "distance, film, tilt or surface");
+void serve(Event& event) {
   constexpr std::array all{FocusServe::distance, FocusServe::film, FocusServe::tilt, FocusServe::surface};
-  const std::string word = event.text("by", by);
-  const auto found = std::ranges::find_if(all, [&](FocusServe serve) { return name(serve) == word; });
-  if (found == all.end()) event.refuse("by", by, "distance, film, tilt or surface");
-  settings.serve = *found;
-  if (*found == FocusServe::surface) {
-    if (const Json* const kind = event.find("kind")) {
-      const std::string kind_word = event.text("kind", *kind);
-      if (kind_word != "affine" && kind_word != "shepard") event.refuse("kind", *kind, "affine or shepard");
-      settings.surface.kind = kind_word == "affine" ? SurfaceKind::affine : SurfaceKind::shepard;
-    }
-    event.set("beta", settings.surface.beta, {1, 8, "a number from 1 to 8"});
-  }
-  if (*found != FocusServe::distance) settings.tilt_rad = settings.swing_rad = 0;
+  EditorSettings& settings = event.settings;
+  event.read({{"by", [&](const JsonPart& part) { read_value(part, settings.serve, all); }, required}});
+  if (settings.serve != FocusServe::distance) settings.setup.film = {};
 }
 
-/// Focuses at a distance by hand.
-void by_distance(EditorSettings& settings) {
-  settings.serve = FocusServe::distance;
-  settings.active.clear();
-  settings.focus_by_hand = true;
-}
-
-void focus(Event& event, const Context&, EditorSettings& settings) {
-  const Json& distance = event.at("distance_mm", "a positive number, or null for infinity");
-  settings.focus_mm = distance.is_null() ? infinity : event.number("distance_mm", distance, positive);
-  const Lens lens = shaped_lens(settings);
+/// Reads a merge patch of the set-up. Returns the patch.
+json read_patch(const JsonPart& part, CameraSetup& setup) {
+  const auto json_of = [](const CameraSetup& of) { return json::parse(to_json(of)); };
+  json merged = json_of(setup);
+  merged.merge_patch(part.json());
+  CameraSetup read;
   try {
-    with_focus(lens, settings.focus_mm, focus_options(settings.choice));
+    read = camera_setup(merged.dump(), "");
   } catch (const Error& error) {
-    throw Error(std::string("focus: ") + error.what());
+    const std::string message = error.what();  // begins with a position in `merged`
+    part.fail(message.substr(message.find(": ") + 2));
   }
-  by_distance(settings);
-}
-
-void set_f_number(Event& event, const Context& context, EditorSettings& settings) {
-  const Json& value = event.at("f_number", "a positive number, or null for wide open");
-  settings.f_number.reset();
-  if (!value.is_null()) settings.f_number = event.number("f_number", value, positive);
-  if (settings.choice.name.empty()) load_lens(context.scene, settings);
-}
-
-void iris(Event& event, const Context&, EditorSettings& settings) {
-  double blades = settings.iris.blades, rotation = degrees(settings.iris.rotation_rad);
-  event.set("blades", blades, {0, 20, "0, or a whole number from 3 to 20"});
-  event.set("roundness", settings.iris.roundness, {-1, 1, "a number from -1 to 1"});
-  event.set("rotation_deg", rotation, {-1e6, 1e6, "a number from -1e6 to 1e6"});
-  if (blades != std::floor(blades)) event.refuse("blades", blades, "0, or a whole number from 3 to 20");
-  settings.iris.blades = static_cast<int>(blades);
-  settings.iris.rotation_rad = radians(rotation);
-}
-
-void bokeh(Event& event, const Context&, EditorSettings& settings) {
-  event.set("lens_ratio", settings.bokeh.lens_ratio, positive);
-  event.set("rate_of_change", settings.bokeh.rate_of_change);
-  event.set("keep_light", settings.bokeh.keep_light);
-  event.set("weight_distribution", settings.bokeh.weight_distribution, {-1000, 1000, "a number from -1000 to 1000"});
-  event.set("weight_strength", settings.bokeh.weight_strength, {-1e6, 1e6, "a number from -1e6 to 1e6"});
-}
-
-void expressive(Event& event, const Context&, EditorSettings& settings) {
-  if (const Json* const power = event.find("power_spline")) {
-    settings.expressive.power.clear();
-    for (const auto& row : event.rows("power_spline", *power, 2)) {
-      settings.expressive.power.push_back({row[0], row[1]});
-    }
+  setup = settable(read);
+  const json unused = json::diff(json_of(setup), json_of(read));
+  if (!unused.empty()) {
+    std::string key = unused[0].at("path").get<std::string>().substr(1);
+    std::ranges::replace(key, '/', '.');
+    part.fail(key + " = " + unused[0].value("value", json()).dump() + "; must be left out: the editor sets it");
   }
-  if (const Json* const offsets = event.find("curvature_points")) {
-    settings.expressive.film_offsets.clear();
-    for (const auto& row : event.rows("curvature_points", *offsets, 3)) {
-      settings.expressive.film_offsets.push_back({{row[0], row[1]}, row[2]});
-    }
+  for (const double angle : {setup.film.tilt_rad, setup.film.swing_rad}) {
+    if (std::abs(angle) <= radians(60)) continue;
+    part.fail("film: tilt_rad, swing_rad = " + json(angle).dump() + "; must be from -pi/3 to pi/3");
   }
-  constexpr Range factor{-1e6, 1e6, "a number from -1e6 to 1e6"};
-  if (const Json* const dispersion = event.find("dispersion")) {
-    const double value = event.number("dispersion", *dispersion, factor);
-    settings.expressive.dispersion.clear();
-    if (value != 1) settings.expressive.dispersion = {value};
+  return part.json();
+}
+
+void set_up(Event& event) {
+  EditorSettings& settings = event.settings;
+  json patch;
+  event.read({{"setup", [&](const JsonPart& part) { patch = read_patch(part, settings.setup); }, required}});
+  const bool thin = settings.setup.lens.thin_mm > 0;
+  if (patch.contains("lens") || (thin && patch.contains("f_number"))) {
+    settings.wide_open = event.scene.lens(settings.setup);
   }
-  event.set("from_lens", settings.from_lens, factor);
-}
-
-void lens(Event& event, const Context& context, EditorSettings& settings) {
-  constexpr const char* rule = "a name, or an object with thin_mm and f_number";
-  const Json& value = event.at("lens", rule);
-  FocusLensChoice choice{.rgb = settings.choice.rgb};
-  if (value.is_string()) {
-    choice.name = value.get<std::string>();
-    if (choice.name.empty()) event.refuse("lens", value, rule);
-  } else if (value.is_object() && value.contains("thin_mm") && value.contains("f_number") && value.size() == 2) {
-    choice.thin_mm = event.number("thin_mm", value["thin_mm"], positive);
-    choice.f_number = event.number("f_number", value["f_number"], positive);
-  } else {
-    event.refuse("lens", value, rule);
+  if (patch.contains("focus_mm")) with_focus(shaped_lens(settings), settings.focus_mm(), focus_options(settings.setup));
+  if (patch.contains("focus_mm") || (patch.contains("film") && settings.serve != FocusServe::distance)) {
+    settings.serve = FocusServe::distance;
+    settings.active.clear();
+    settings.focus_by_hand = true;
   }
-  settings.choice = choice;
-  settings.f_number.reset();
-  load_lens(context.scene, settings);
 }
 
-void colour(Event& event, const Context& context, EditorSettings& settings) {
-  const bool before = settings.choice.rgb;
-  event.set("rgb", settings.choice.rgb);
-  if (settings.choice.rgb != before) load_lens(context.scene, settings);
+void expressive(Event& event) {
+  event.read({number("from_lens", event.settings.from_lens, {-1e6, 1e6, "a number from -1e6 to 1e6"}, required)});
 }
 
-void tilt(Event& event, const Context&, EditorSettings& settings) {
-  constexpr Range angle{-largest_tilt_deg, largest_tilt_deg, "a number from -60 to 60"};
-  double tilt = degrees(settings.tilt_rad), swing = degrees(settings.swing_rad);
-  event.set("tilt_deg", tilt, angle);
-  event.set("swing_deg", swing, angle);
-  if (settings.serve != FocusServe::distance) by_distance(settings);
-  settings.tilt_rad = radians(tilt), settings.swing_rad = radians(swing);
-}
-
-void weighting(Event& event, const Context&, EditorSettings& settings) {
-  event.set("nearer", settings.nearer_weighs_more);
-  event.set("fade", settings.points_fade);
+void weighting(Event& event) {
+  EditorSettings& settings = event.settings;
   const double before = settings.fade_s;
-  event.set("fade_s", settings.fade_s, not_negative);
+  event.read({{"nearer", settings.nearer_weighs_more},
+              {"fade", settings.points_fade},
+              number("fade_s", settings.fade_s, not_negative)});
   if (settings.fade_s == before) return;
   for (auto& point : settings.points) point.edit().fade = FadeFilter(settings.fade_s);
 }
@@ -366,82 +248,93 @@ void put_key(Keys<T>& keys, double time, const T& value) {
   }
 }
 
-constexpr Range times{-1e9, 1e9, "a number from -1e9 to 1e9"};
-
 void set_time(EditorSettings& settings, double time) {
   settings.seconds_to_fade = std::abs(time - settings.time_s);
   settings.time_s = time;
+  settings.focus_by_hand = false;
 }
 
-void key(Event& event, const Context&, EditorSettings& settings) {
+void key(Event& event) {
+  EditorSettings& settings = event.settings;
   double time = settings.time_s;
-  event.set("time_s", time, times);
+  event.read({number("time_s", time, times)});
   for (auto& shared : settings.points) {
     EditorPoint& point = shared.edit();
     if (point.now.place) put_key(point.keys, time, point.now);
     point.by_hand = false;
   }
-  put_key(settings.focus_keys, time, settings.focus_mm);
-  settings.focus_by_hand = false;
+  put_key(settings.focus_keys, time, settings.focus_mm());
   set_time(settings, time);
 }
 
-void time(Event& event, const Context&, EditorSettings& settings) {
-  set_time(settings, event.number("time_s", event.at("time_s", times.words), times));
-  for (auto& point : settings.points) {
+void time(Event& event) {
+  double time = 0;
+  event.read({number("time_s", time, times, required)});
+  set_time(event.settings, time);
+  for (auto& point : event.settings.points) {
     if (point->by_hand) point.edit().by_hand = false;
   }
-  settings.focus_by_hand = false;
 }
 
-void still(Event&, const Context&, EditorSettings&) {}
+void no_keys(Event& event) { event.read({}); }
 
 struct Kind {
-  const char* type;
-  void (*apply)(Event&, const Context&, EditorSettings&);
+  std::string_view type;
+  void (*apply)(Event&);
 };
 constexpr Kind kinds[] = {{"add_point", add_point},
                           {"move_point", move_point},
                           {"set_point", set_point},
                           {"remove_point", remove_point},
                           {"serve", serve},
-                          {"focus", focus},
-                          {"f_number", set_f_number},
-                          {"iris", iris},
-                          {"bokeh", bokeh},
+                          {"setup", set_up},
                           {"expressive", expressive},
-                          {"lens", lens},
-                          {"colour", colour},
-                          {"tilt", tilt},
                           {"weighting", weighting},
                           {"key", key},
                           {"time", time},
-                          {"still", still}};
+                          {"still", no_keys},
+                          {"undo", no_keys},
+                          {"redo", no_keys}};
+
+/// @throws Error unless the event is an object with the type of a kind
+const Kind& kind_of(std::string_view event) {
+  const JsonTree tree(event, "event", words_of);
+  const Kind* found = nullptr;
+  const JsonPart whole(tree);
+  whole.each_member([&](const std::string& name, const JsonPart& part) {
+    if (name != "type") return;
+    found = std::ranges::find(kinds, part.text(), &Kind::type);
+    if (found != std::end(kinds)) return;
+    std::string known;
+    for (const Kind& kind : kinds) known += (known.empty() ? "" : ", ") + std::string(kind.type);
+    part.refuse("one of " + known);
+  });
+  if (!found) whole.fail("key \"type\" is missing");
+  return *found;
+}
 
 }  // namespace
 
-std::string type_of(const Json& event) {
-  if (!event.is_object()) throw Error("event = " + shown(event) + "; must be a JSON object");
-  const auto type = event.find("type");
-  if (type == event.end() || !type->is_string()) {
-    throw Error("event " + shown(event) + ": type is missing; must be a text");
-  }
-  return type->get<std::string>();
+CameraSetup settable(const CameraSetup& setup) {
+  CameraSetup result{.lens = setup.lens,
+                     .f_number = setup.f_number,
+                     .iris = setup.iris,
+                     .focus_mm = setup.focus_mm,
+                     .film = {.tilt_rad = setup.film.tilt_rad, .swing_rad = setup.film.swing_rad},
+                     .camera = {.bokeh = setup.camera.bokeh, .expressive = setup.camera.expressive},
+                     .focal_surface = {.kind = setup.focal_surface.kind, .beta = setup.focal_surface.beta}};
+  result.camera.bokeh.blades = 0;
+  return result;
 }
 
-bool apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings, const Json& json) {
-  Event event(json);
-  const auto found = std::ranges::find_if(kinds, [&](const Kind& kind) { return event.type() == kind.type; });
-  if (found == std::end(kinds)) {
-    std::string known;
-    for (const Kind& kind : kinds) known += std::string(kind.type) + ", ";
-    event.refuse("type", event.type(), known + "undo or redo");
-  }
-  bool continues = false;
-  event.set("continues", continues);
-  found->apply(event, {scene, state}, settings);
-  event.finish();
-  return continues;
+std::pair<std::string_view, bool> apply_event(const FocusScene& scene, const FocusEditorState& state,
+                                              EditorSettings& settings, std::string_view text) {
+  const Kind& kind = kind_of(text);
+  const JsonTree tree(text, std::string(kind.type), words_of);
+  const JsonPart part(tree);
+  Event event{part, scene, state, settings};
+  kind.apply(event);
+  return {kind.type, event.continues};
 }
 
 }  // namespace petzval::editor_detail

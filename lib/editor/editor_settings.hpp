@@ -9,16 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
-#include "petzval/camera/bokeh.hpp"
-#include "petzval/camera/expressive_lens.hpp"
-#include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/editor/focus_editor.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/focus/focus_point.hpp"
-#include "petzval/iris/iris.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::editor_detail {
@@ -62,32 +57,28 @@ struct EditorPoint {
 
 /// All settings that events change. Undo restores earlier settings.
 struct EditorSettings {
-  FocusLensChoice choice;
-  std::optional<Lens> wide_open;   ///< compiled from `choice`
-  std::optional<double> f_number;  ///< nullopt: wide open
-  Iris iris;
-  BokehControls bokeh;
-  ExpressiveLens expressive;
-  double from_lens = 0;  ///< part of the lens's own aberrations in the expressive lens
+  CameraSetup setup;              ///< settable(); tilt and swing are by hand, for serve by distance
+  std::optional<Lens> wide_open;  ///< compiled from `setup`
+  double from_lens = 0;           ///< part of the lens's own aberrations in the expressive lens
   FocusServe serve = FocusServe::distance;
-  FocalSurfaceOptions surface;
-  double focus_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
   Keys<double> focus_keys;
-  bool focus_by_hand = false;          ///< focus_mm replaces the keys until the time changes
-  std::string active;                  ///< id of the point in focus for serve by distance; empty: no point
-  double tilt_rad = 0, swing_rad = 0;  ///< by hand, for serve by distance
+  bool focus_by_hand = false;  ///< the distance replaces the keys until the time changes
+  std::string active;          ///< id of the point in focus for serve by distance; empty: no point
   bool nearer_weighs_more = false, points_fade = true;
   double fade_s = 0.2, time_s = 0;
   double seconds_to_fade = 0;  ///< time that passed since the last state
   std::vector<Shared<EditorPoint>> points;
   int points_added = 0;
+
+  /// From the front vertex.
+  double focus_mm() const noexcept { return setup.focus_mm.value_or(std::numeric_limits<double>::infinity()); }
 };
 
-/// Compiles the lens of the settings.
-void load_lens(const FocusScene& scene, EditorSettings& settings);
+/// The set-up with the members that events set; the others have their defaults.
+CameraSetup settable(const CameraSetup& setup);
 
 /// Options of the focus at a distance: thin lenses have no exact rays.
-FocusOptions focus_options(const FocusLensChoice& choice);
+FocusOptions focus_options(const CameraSetup& setup);
 
 /// The lens with its iris and f-number.
 Lens shaped_lens(const EditorSettings& settings);
@@ -96,20 +87,15 @@ Lens shaped_lens(const EditorSettings& settings);
 /// equal states, to the bit.
 FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings);
 
-/// The type of an event.
-///
-/// @throws Error unless the event is an object with a text `type`
-std::string type_of(const nlohmann::ordered_json& event);
-
-/// Applies an event other than undo and redo. Returns its key `continues`.
+/// Applies an event; undo and redo change nothing. Returns the type, and the key `continues`.
 ///
 /// @param scene     the scene
 /// @param state     the state of the settings, through whose lens pixels see the scene
 /// @param settings  changed by the event
 /// @param event     a JSON object
 /// @throws Error that names the type, the key, the value and the rule; the settings are then invalid
-bool apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings,
-                 const nlohmann::ordered_json& event);
+std::pair<std::string_view, bool> apply_event(const FocusScene& scene, const FocusEditorState& state,
+                                              EditorSettings& settings, std::string_view event);
 
 /// Maps between the scene frame and the lens frame. entrance_z: z of the entrance pupil.
 Vec3<double> to_lens(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept;

@@ -35,6 +35,7 @@ struct Focused {
   IdealLens ideal;
   Film film;
   double focus_mm;
+  bool by_distance = true;  ///< false: as its prescription, at the distance that is then in focus
   double entrance_z() const noexcept { return ideal.pupils.entrance.z; }
 };
 
@@ -55,7 +56,7 @@ std::optional<Focused> try_focus(const FocusScene& scene, const EditorSettings& 
                                  double focus_mm) {
   if (!(focus_mm > 0)) return {};
   try {
-    return with_scene_film(scene, with_focus(lens, focus_mm, focus_options(settings.choice)), focus_mm);
+    return with_scene_film(scene, with_focus(lens, focus_mm, focus_options(settings.setup)), focus_mm);
   } catch (const Error&) {
     return {};  // with_focus() has no status: the lens may have groups that collide
   }
@@ -63,10 +64,12 @@ std::optional<Focused> try_focus(const FocusScene& scene, const EditorSettings& 
 
 /// The lens at the distance of the settings, else at infinity, else where its prescription has its film.
 Focused focused_nearby(const FocusScene& scene, const EditorSettings& settings, const Lens& lens) {
-  if (auto focused = try_focus(scene, settings, lens, settings.focus_mm)) return *focused;
+  if (auto focused = try_focus(scene, settings, lens, settings.focus_mm())) return *focused;
   if (auto focused = try_focus(scene, settings, lens, infinity)) return *focused;
-  const FocusSolution own = solve_subject(lens, lens.film_z(), focus_options(settings.choice));
-  return with_scene_film(scene, lens, own.distance);
+  const FocusSolution own = solve_subject(lens, lens.film_z(), focus_options(settings.setup));
+  Focused result = with_scene_film(scene, lens, own.distance);
+  result.by_distance = false;
+  return result;
 }
 
 /// A point in the scene at a time. A point of a triangle follows its vertices.
@@ -138,7 +141,7 @@ void follow_keys(const FocusScene& scene, EditorSettings& settings, const Focuse
     }
     const auto found = focus_targets(base.ideal, std::span(&track, 1), {.time = settings.time_s});
     if (!found.empty()) {
-      settings.focus_mm = found.front().point.at_infinity ? infinity : -found.front().point.position.z;
+      settings.setup.focus_mm = found.front().point.at_infinity ? infinity : -found.front().point.position.z;
     }
   }
 }
@@ -193,26 +196,29 @@ struct Solution {
 
 /// The distance in focus of a film position. Beyond infinity: infinity.
 double distance_of(const EditorSettings& settings, const Lens& lens, double film_z) {
-  return solve_subject(lens, film_z, focus_options(settings.choice)).distance;
+  return solve_subject(lens, film_z, focus_options(settings.setup)).distance;
 }
 
 /// True if the points are served by first-order optics.
 bool first_order(const EditorSettings& settings) {
-  return settings.choice.name.empty() || settings.serve == FocusServe::surface || !settings.expressive.empty() ||
-         settings.from_lens != 0;
+  return settings.setup.lens.thin_mm > 0 || settings.serve == FocusServe::surface ||
+         !settings.setup.camera.expressive.empty() || settings.from_lens != 0;
 }
 
 Solution solve(const EditorSettings& settings, const Focused& base, const Scenery& points) {
   const bool ideal = first_order(settings);
   switch (settings.serve) {
     case FocusServe::distance: {
-      Solution result{"solved", settings.focus_mm, settings.tilt_rad, settings.swing_rad};
+      const Film& by_hand = settings.setup.film;
+      Solution result{"solved", settings.focus_mm(), by_hand.tilt_rad, by_hand.swing_rad};
       for (std::size_t i = 0; i < settings.points.size(); ++i) {
         if (settings.points[i]->id != settings.active) continue;
         const ScenePoint& at = points.targets[i].point;
         const bool ahead = !points.tracks[i].keys.empty() && at.position.z < 0;
-        if (!ahead)
-          return {name(AutofocusStatus::no_targets), settings.focus_mm, settings.tilt_rad, settings.swing_rad};
+        if (!ahead) {
+          result.status = name(AutofocusStatus::no_targets);
+          return result;
+        }
         result.focus_mm = at.at_infinity ? infinity : -at.position.z;
       }
       return result;
@@ -221,7 +227,7 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
       const TiltOptions options{.film = base.film};
       const TiltFit fit =
           ideal ? fit_tilt(base.ideal, points.targets, options) : fit_tilt(base.lens, points.targets, options);
-      if (!fit) return {name(fit.status), settings.focus_mm};
+      if (!fit) return {name(fit.status), settings.focus_mm()};
       return {name(fit.status), distance_of(settings, base.lens, fit.film.z()), fit.film.tilt_rad, fit.film.swing_rad};
     }
     case FocusServe::film:
@@ -229,7 +235,7 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
   }
   const Autofocus focus =
       ideal ? autofocus(base.ideal, points.targets, base.film) : autofocus(base.lens, points.targets, base.film);
-  if (!focus) return {name(focus.status), settings.focus_mm};
+  if (!focus) return {name(focus.status), settings.focus_mm()};
   return {"solved", distance_of(settings, base.lens, focus.film.z())};
 }
 
@@ -241,9 +247,9 @@ void measure(const EditorSettings& settings, const Focused& base, const Scenery&
   std::vector<std::optional<ExactBlur>> exact(all.size());
   std::vector<double> blurs(all.size(), std::numeric_limits<double>::quiet_NaN());
   if (traced && !all.empty()) {
-    exact = exact_blurs(state.lens, state.film, all);
+    exact = exact_blurs(state.lens, state.setup.film, all);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (exact[i]) blurs[i] = exact[i]->signed_diameter / state.film.pixel_mm();
+      if (exact[i]) blurs[i] = exact[i]->signed_diameter / state.setup.film.pixel_mm();
     }
   } else if (!all.empty()) {
     blurs = state.first_order_blurs_px(all);
@@ -265,8 +271,8 @@ void measure(const EditorSettings& settings, const Focused& base, const Scenery&
       mark.status = name(TargetStatus::no_rays);
     }
     if (!image) continue;
-    const auto at = chief_point(*image, state.film);
-    if (at) mark.raster = state.film.raster(*at);
+    const auto at = chief_point(*image, state.setup.film);
+    if (at) mark.raster = state.setup.film.raster(*at);
     if (std::isfinite(blurs[i])) mark.blur_px = blurs[i];
   }
 }
@@ -282,18 +288,11 @@ bool moved(const EditorSettings& settings, const Focused& before, const Focused&
          (!after.lens.focus_positions().empty() && differ(before.focus_mm, after.focus_mm));
 }
 
-/// A function that makes a camera when it is called first, in any thread, and keeps it.
-template <class Make>
-std::function<const Camera&()> once(Make make) {
-  struct Kept {
-    std::once_flag flag;
-    std::optional<Camera> camera;
-  };
-  return [make = std::move(make), kept = std::make_shared<Kept>()]() -> const Camera& {
-    std::call_once(kept->flag, [&] { kept->camera.emplace(make()); });
-    return *kept->camera;
-  };
-}
+/// A camera that is made when it is needed first.
+struct LazyCamera {
+  std::once_flag flag;
+  std::optional<Camera> camera;
+};
 
 }  // namespace
 
@@ -307,27 +306,20 @@ Vec3<double> to_scene(const FocusScene& scene, double entrance_z, const Vec3<dou
   return scene.position + scene.right * point.x + scene.up * point.y + scene.back * (point.z - entrance_z);
 }
 
-void load_lens(const FocusScene& scene, EditorSettings& settings) {
-  FocusLensChoice choice = settings.choice;
-  if (choice.name.empty() && settings.f_number) choice.f_number = *settings.f_number;
-  settings.wide_open = scene.lens(choice);
-}
-
-FocusOptions focus_options(const FocusLensChoice& choice) {
-  return {.criterion = choice.name.empty() ? FocusCriterion::paraxial : FocusCriterion::min_rms};
+FocusOptions focus_options(const CameraSetup& setup) {
+  return {.criterion = setup.lens.thin_mm > 0 ? FocusCriterion::paraxial : FocusCriterion::min_rms};
 }
 
 Lens shaped_lens(const EditorSettings& settings) {
-  Lens lens = with_iris(*settings.wide_open, settings.iris);
-  // The scene compiles a thin lens with its f-number.
-  if (settings.f_number && !settings.choice.name.empty()) lens = with_f_number(lens, *settings.f_number);
-  return lens;
+  CameraSetup setup = settings.setup;
+  setup.focus_mm.reset();
+  return prepared(setup, *settings.wide_open);
 }
 
 FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
   const Lens lens = shaped_lens(settings);
   Focused base = focused_nearby(scene, settings, lens);
-  bool reached = base.focus_mm == settings.focus_mm;
+  bool reached = base.focus_mm == settings.focus_mm();
   follow_keys(scene, settings, base);
   Scenery points = scenery(scene, settings, base);
   advance_fades(settings, base, points);
@@ -343,35 +335,34 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
     base = *std::move(next);
     if (!again) break;
   }
-  settings.focus_mm = base.focus_mm;
+  settings.setup.focus_mm = base.focus_mm;
   points = scenery(scene, settings, base);
 
-  FocusEditorState state{.choice = settings.choice, .lens = base.lens, .film = base.film};
+  FocusEditorState state{.setup = settings.setup, .lens = base.lens};
+  CameraSetup& setup = state.setup;
+  setup.focus = focus_options(setup);
+  if (!base.by_distance) setup.focus_mm.reset();
+  setup.film = base.film;
   // Rounded to an angle that is a double in degrees. A command line can state this angle.
-  state.film.tilt_rad = radians(degrees(solution.tilt_rad));
-  state.film.swing_rad = radians(degrees(solution.swing_rad));
-  state.bokeh = settings.bokeh;
-  state.expressive = settings.expressive;
+  setup.film.tilt_rad = radians(degrees(solution.tilt_rad));
+  setup.film.swing_rad = radians(degrees(solution.swing_rad));
+  ExpressiveLens& expressive = setup.camera.expressive;
   if (settings.from_lens != 0) {
     const ExpressiveLens own = fit_expressive_lens(base.lens, base.film);
-    if (state.expressive.power.empty()) {
+    if (expressive.power.empty()) {
       for (const PowerKnot& knot : own.power) {
-        state.expressive.power.push_back({knot.radius, 1 + settings.from_lens * (knot.power - 1)});
+        expressive.power.push_back({knot.radius, 1 + settings.from_lens * (knot.power - 1)});
       }
     }
-    if (state.expressive.film_offsets.empty()) {
+    if (expressive.film_offsets.empty()) {
       for (FilmOffset offset : own.film_offsets) {
         offset.offset_mm *= settings.from_lens;
-        state.expressive.film_offsets.push_back(offset);
+        expressive.film_offsets.push_back(offset);
       }
     }
   }
   state.serve = settings.serve;
-  state.f_number = settings.f_number ? *settings.f_number
-                   : state.thin()    ? settings.choice.f_number
-                                     : real_f_number(*settings.wide_open);
-  state.f_number_set = settings.f_number.has_value();
-  if (state.thin()) state.choice.f_number = state.f_number;
+  state.f_number = setup.f_number ? *setup.f_number : real_f_number(*settings.wide_open);
   state.focus_mm = base.focus_mm;
   state.status = reached ? solution.status : name(FocusStatus::unreachable);
   state.time_s = settings.time_s;
@@ -383,16 +374,14 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
       tracks.push_back(points.tracks[i]);
       fades.push_back(settings.points[i]->fade.fades().front());
     }
-    const std::vector<FocalPoint> seen =
+    std::vector<FocalPoint> seen =
         focal_points(base.ideal, base.film, tracks,
                      {.time = settings.time_s, .nearer_weighs_more = settings.nearer_weighs_more}, fades);
     const bool weighs = std::ranges::any_of(seen, [](const FocalPoint& point) { return point.weight > 0; });
     if (weighs) {
-      FocalSurfaceOptions options = settings.surface;
-      options.default_inverse_distance = 1 / (base.focus_mm + base.entrance_z());
-      state.surface.emplace(base.ideal, base.film, seen, options);
-      state.surface_points = std::move(seen);
-      state.surface_options = options;
+      setup.focal_surface.default_inverse_distance = 1 / (base.focus_mm + base.entrance_z());
+      state.surface.emplace(base.ideal, base.film, seen, setup.focal_surface);
+      setup.focal_points = std::move(seen);
     } else {
       state.status = name(AutofocusStatus::no_targets);
     }
@@ -410,8 +399,14 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
     state.targets.push_back(std::move(mark));
   }
   measure(settings, base, points, state);
-  state.camera = once(
-      [lens = state.lens, film = state.film, options = state.camera_options()] { return Camera(lens, film, options); });
+  const bool first_order = state.surface || !expressive.empty();
+  setup.camera.model = state.thin() ? ModelKind::thin : first_order ? ModelKind::thick : ModelKind::exact_float;
+  setup.camera.normalisation = Normalisation::unity_on_axis;
+  setup.camera.paraxial_focus = state.thin();
+  state.camera = [setup, lens = state.lens, made = std::make_shared<LazyCamera>()]() -> const Camera& {
+    std::call_once(made->flag, [&] { made->camera.emplace(petzval::camera(setup, lens)); });
+    return *made->camera;
+  };
   return state;
 }
 
@@ -419,6 +414,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
 
 std::vector<double> FocusEditorState::first_order_blurs_px(std::span<const ScenePoint> points) const {
   const IdealLens ideal = thick_lens(lens);
+  const Film& film = setup.film;
   const double exit_z = ideal.pupils.exit.z;
   Film sharp = film;
   std::vector<double> result;
@@ -442,18 +438,6 @@ std::vector<double> FocusEditorState::first_order_blurs_px(std::span<const Scene
     blur = signed_blur(*image, sharp) * scale;
   }
   return result;
-}
-
-CameraOptions FocusEditorState::camera_options() const {
-  const bool first_order = surface || !expressive.empty();
-  return {.model = thin()        ? ModelKind::thin
-                   : first_order ? ModelKind::thick
-                                 : ModelKind::exact_float,
-          .normalisation = Normalisation::unity_on_axis,
-          .bokeh = bokeh,
-          .focal_surface = surface,
-          .expressive = expressive,
-          .paraxial_focus = thin()};
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -41,13 +42,9 @@ void check(const FocusScene& scene) {
 }  // namespace
 
 std::string_view name(FocusServe serve) noexcept {
-  switch (serve) {
-    case FocusServe::distance: return "distance";
-    case FocusServe::film: return "film";
-    case FocusServe::tilt: return "tilt";
-    case FocusServe::surface: return "surface";
-  }
-  return "unknown";
+  constexpr std::string_view names[] = {"distance", "film", "tilt", "surface"};
+  const auto i = static_cast<std::size_t>(serve);
+  return i < std::size(names) ? names[i] : "unknown";
 }
 
 struct FocusEditor::Data {
@@ -61,11 +58,11 @@ struct FocusEditor::Data {
   std::vector<std::string> log;
 };
 
-FocusEditor::FocusEditor(FocusScene scene, const FocusLensChoice& lens) {
+FocusEditor::FocusEditor(FocusScene scene, const CameraSetup& setup) {
   check(scene);
   editor_detail::EditorSettings settings;
-  settings.choice = lens;
-  load_lens(scene, settings);
+  settings.setup = editor_detail::settable(setup);
+  settings.wide_open = scene.lens(settings.setup);
   std::vector<editor_detail::EditorSettings> steps{settings};
   FocusEditorState state = state_of(scene, settings);
   data_ =
@@ -77,35 +74,28 @@ FocusEditor::FocusEditor(FocusEditor&&) noexcept = default;
 FocusEditor& FocusEditor::operator=(FocusEditor&&) noexcept = default;
 
 void FocusEditor::apply(std::string_view event) {
+  Data& data = *data_;
+  editor_detail::EditorSettings settings = data.settings;
+  const auto [type, continues] = apply_event(data.scene, data.state, settings, event);
   const Json json = Json::parse(event, nullptr, false);
   if (json.is_discarded()) throw Error("event = " + std::string(beginning(event, 80)) + "; must be JSON");
-  Data& data = *data_;
-  const std::string type = editor_detail::type_of(json);
-  if (type == "undo" || type == "redo") {
-    if (json.size() > 1) throw Error(type + ": must have no keys besides type");
-    if (!(type == "undo" ? can_undo() : can_redo())) throw Error(type + ": there is no event to " + type);
-    const std::size_t to = type == "undo" ? data.current - 1 : data.current + 1;
-    editor_detail::EditorSettings settings = data.steps[to];
-    FocusEditorState state = state_of(data.scene, settings);
-    data.log.push_back(json.dump());
-    data.current = to, data.settings = std::move(settings), data.state = std::move(state);
-    return;
+  if (type == "still") return data.log.push_back(json.dump());
+  const bool undo = type == "undo", moves = undo || type == "redo";
+  if (moves && !(undo ? can_undo() : can_redo())) {
+    throw Error(std::string(type) + ": there is no event to " + std::string(type));
   }
-  editor_detail::EditorSettings settings = data.settings;
-  const bool continues = apply_event(data.scene, data.state, settings, json);
-  std::string text = json.dump();
-  if (type == "still") {
-    data.log.push_back(std::move(text));
-    return;
-  }
+  // With `continues`, the event before remains the step that undo leads back to.
+  const bool stays = !moves && continues && data.current > 0;
+  const std::size_t to = undo ? data.current - 1 : stays ? data.current : data.current + 1;
+  if (moves) settings = data.steps[to];
   editor_detail::EditorSettings step = settings;
   FocusEditorState state = state_of(data.scene, settings);
-  data.log.push_back(std::move(text));
-  // The event before remains the step that undo leads back to.
-  if (!(continues && data.current > 0)) ++data.current;
-  data.steps.erase(data.steps.begin() + static_cast<std::ptrdiff_t>(data.current), data.steps.end());
-  data.steps.push_back(std::move(step));
-  data.settings = std::move(settings), data.state = std::move(state);
+  data.log.push_back(json.dump());
+  if (!moves) {
+    data.steps.erase(data.steps.begin() + static_cast<std::ptrdiff_t>(to), data.steps.end());
+    data.steps.push_back(std::move(step));
+  }
+  data.current = to, data.settings = std::move(settings), data.state = std::move(state);
 }
 
 void FocusEditor::replay(std::string_view events) {

@@ -277,12 +277,11 @@ TEST(CameraRays, HaveTheIrradianceOfTheCameraInSmallImages) {
 TEST(CameraRays, PartsOfFilmPixelsEqualAFineFilm) {
   Film fine = film;
   fine.columns *= 2, fine.rows *= 2;
-  const Camera camera(double_gauss(), film);
-  const LayerCamera layers = layer_camera(Camera(double_gauss(), fine));
-  std::vector<LayerRay> parts(64), whole(64);
-  LensRays::of(camera, layers, vogel_points(64)).at(0, 701, 95, parts);
-  LensRays::of(Camera(double_gauss(), fine), layers, vogel_points(64)).at(0, 701, 95, whole);
-  for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(parts[i].position, whole[i].position);
+  const Camera camera(double_gauss(), film), of_fine(double_gauss(), fine);
+  std::vector<LayerRay> rays[2] = {std::vector<LayerRay>(64), std::vector<LayerRay>(64)};
+  LensRays::of(camera, layer_camera(of_fine), vogel_points(64)).at(0, 701, 95, rays[0]);
+  LensRays::of(of_fine, layer_camera(of_fine), vogel_points(64)).at(0, 701, 95, rays[1]);
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(rays[0][i].position, rays[1][i].position);
 }
 
 TEST(CameraRays, RefuseTravellingFilmsAndOtherImages) {

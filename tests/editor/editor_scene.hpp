@@ -16,8 +16,10 @@ namespace petzval::testing {
 /// A wall, tilted about the vertical axis, behind the pixels of a picture, and above it the sky, in the lens frame.
 inline FocusScene wall_scene() {
   FocusScene scene{.columns = 800, .rows = 600, .vertical_angle_rad = radians(30)};
-  scene.lens = [](const FocusLensChoice& choice) {
-    return choice.name.empty() ? compile(thin_elements(choice.thin_mm, choice.f_number)) : data_lens(choice.name);
+  scene.lens = [](const CameraSetup& setup) {
+    const LensSource& lens = setup.lens;
+    if (lens.thin_mm > 0) return compile(thin_elements(lens.thin_mm, setup.f_number.value()));
+    return data_lens(lens.file + (lens.configuration.empty() ? "" : ':' + lens.configuration));
   };
   scene.place = [](const Ray<double>& ray, double) -> std::optional<FocusPlace> {
     const Vec3<double> along = ray.direction / -ray.direction.z;  // from the pinhole in the origin
@@ -28,7 +30,10 @@ inline FocusScene wall_scene() {
   return scene;
 }
 
-inline FocusLensChoice thin_50() { return {.thin_mm = 50, .f_number = 2}; }
+inline CameraSetup thin_50(double f_number = 2) { return {.lens = {.thin_mm = 50}, .f_number = f_number}; }
+
+/// An event with a patch of the set-up.
+inline std::string patch(const std::string& setup) { return R"({"type": "setup", "setup": )" + setup + "}"; }
 
 inline const FocusMark& mark(const FocusEditor& editor, const std::string& id) {
   for (const FocusMark& found : editor.state().targets) {
@@ -39,7 +44,7 @@ inline const FocusMark& mark(const FocusEditor& editor, const std::string& id) {
 
 /// All numbers of a state that a picture or a listing depends on.
 inline std::vector<double> numbers(const FocusEditorState& state) {
-  const Film& film = state.film;
+  const Film& film = state.setup.film;
   std::vector<double> result{film.z(),
                              film.tilt_rad,
                              film.swing_rad,

@@ -15,6 +15,7 @@ namespace petzval {
 namespace {
 
 using testing::numbers;
+using testing::patch;
 using testing::thin_50;
 using testing::wall_scene;
 
@@ -43,13 +44,14 @@ class RandomEvents {
         static const char* const all[] = {"distance", "film", "tilt", "surface"};
         return std::string(R"({"type": "serve", "by": ")") + all[engine_() % 4] + "\"}";
       }
-      case 9: return R"({"type": "focus", "distance_mm": )" + real(60, 9000) + "}";
-      case 10: return R"({"type": "f_number", "f_number": )" + real(2, 16) + "}";
-      case 11: return R"({"type": "iris", "blades": )" + std::to_string(engine_() % 9) + "}";
-      case 12: return R"({"type": "bokeh", "lens_ratio": )" + real(0.7, 1.4) + "}";
-      case 13: return R"({"type": "expressive", "power_spline": [[0, 1], [1, )" + real(0.99, 1.01) + "]]}";
-      case 14: return R"({"type": "lens", "lens": {"thin_mm": )" + real(30, 90) + R"(, "f_number": 2}})";
-      case 15: return R"({"type": "tilt", "tilt_deg": )" + real(-5, 5) + "}";
+      case 9: return patch(R"({"focus_mm": )" + real(60, 9000) + "}");
+      case 10: return patch(R"({"f_number": )" + real(2, 16) + "}");
+      case 11: return patch(R"({"iris": {"blades": )" + std::to_string(engine_() % 9) + "}}");
+      case 12: return patch(R"({"camera": {"bokeh": {"lens_ratio": )" + real(0.7, 1.4) + "}}}");
+      case 13:
+        return patch(R"({"camera": {"expressive": {"power": [{"radius": 1, "power": )" + real(0.99, 1.01) + "}]}}}");
+      case 14: return patch(R"({"f_number": 2, "lens": {"thin_mm": )" + real(30, 90) + "}}");
+      case 15: return patch(R"({"film": {"tilt_rad": )" + real(-0.1, 0.1) + "}}");
       case 16: return R"({"type": "key", "time_s": )" + std::to_string(engine_() % 5) + "}";
       case 17: return R"({"type": "time", "time_s": )" + real(0, 5) + "}";
       case 18: return R"({"type": "undo"})";
@@ -93,28 +95,6 @@ TEST(FocusEditorEvents, ReplayGivesTheSameStateToTheBit) {
     EXPECT_EQ(numbers(again.state()), numbers(editor.state())) << seed;
     EXPECT_EQ(again.log(), editor.log());
   }
-}
-
-// The states of two editors are compared after each event.
-TEST(FocusEditorEvents, TenThousandEventsAreReplayed) {
-  FocusEditor one(wall_scene(), thin_50()), two(wall_scene(), thin_50());
-  RandomEvents events(50);
-  int applied = 0;
-  for (int i = 0; i < 10000; ++i) {
-    const std::string event = one.state().targets.size() > 11
-                                  ? R"({"type": "remove_point", "id": ")" + one.state().targets[0].id + R"("})"
-                                  : events.next();
-    bool refused = false;
-    try {
-      one.apply(event);
-      ++applied;
-    } catch (const Error&) {
-      refused = true;
-    }
-    if (!refused) two.apply(event);
-    ASSERT_EQ(numbers(two.state()), numbers(one.state())) << i << ": " << event;
-  }
-  EXPECT_GT(applied, 6000);
 }
 
 TEST(FocusEditorEvents, ThreadsDoNotChangeTheState) {
@@ -180,16 +160,18 @@ TEST(FocusEditorEvents, RefusedEventsNameTheKeyAndTheRule) {
   editor.apply(R"({"type": "add_point", "id": "eye", "pixel": [400, 300]})");
   const std::vector<double> before = numbers(editor.state());
   const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"[1, 2]", {"[1,2]", "object"}},
+      {"[1, 2]", {"list", "object"}},
       {"{\"type\": ", {"JSON"}},
       {R"({"kind": "focus"})", {"type", "missing"}},
       {R"({"type": "zoom"})", {"zoom", "add_point", "redo"}},
-      {R"({"type": "focus", "distance_m": 3})", {"distance_mm", "missing"}},
-      {R"({"type": "focus", "distance_mm": 3, "unit": "m"})", {"focus"}},
-      {R"({"type": "f_number", "f_number": 2, "stops": 3})", {"stops", "unknown", "f_number"}},
-      {R"({"type": "focus", "distance_mm": -3})", {"distance_mm", "-3", "positive"}},
-      {R"({"type": "focus", "distance_mm": 20})", {"focus", "20"}},
-      {R"({"type": "f_number", "f_number": "2.8"})", {"f_number", "2.8"}},
+      {R"({"type": "time"})", {"time_s", "missing"}},
+      {R"({"type": "time", "time_s": 3, "unit": "ms"})", {"unit", "unknown", "time_s"}},
+      {R"({"type": "setup", "setup": 3})", {"setup", "3", "object"}},
+      {R"({"type": "setup", "setup": {"f_number": 2, "stops": 3}})", {"stops", "unknown", "f_number"}},
+      {R"({"type": "setup", "setup": {"focus_mm": -3}})", {"setup:1:28", "focus_mm", "-3", "above 0"}},
+      {R"({"type": "setup", "setup": {"focus_mm": 20}})", {"20"}},
+      {R"({"type": "setup", "setup": {"f_number": "2.8"}})", {"f_number", "2.8"}},
+      {R"({"type": "setup", "setup": {"film": {"width_mm": 30}}})", {"film.width_mm", "30", "left out"}},
       {R"({"type": "add_point", "id": "eye", "pixel": [1, 2]})", {"eye", "unused"}},
       {R"({"type": "add_point", "pixel": [900, 2]})", {"pixel", "900", "800"}},
       {R"({"type": "add_point"})", {"neither", "pixel", "position_mm"}},
@@ -199,9 +181,10 @@ TEST(FocusEditorEvents, RefusedEventsNameTheKeyAndTheRule) {
       {R"({"type": "set_point", "id": "eye", "extent_stops": 99})", {"extent_stops", "99", "20"}},
       {R"({"type": "move_point", "id": "ear", "pixel": [1, 2]})", {"ear", "eye"}},
       {R"({"type": "serve", "by": "magic"})", {"magic", "surface"}},
-      {R"({"type": "iris", "blades": 2})", {"blades", "2"}},
-      {R"({"type": "lens", "lens": {"thin_mm": 50}})", {"thin_mm", "f_number"}},
-      {R"({"type": "tilt", "tilt_deg": 90})", {"tilt_deg", "90", "60"}},
+      {R"({"type": "setup", "setup": {"iris": {"blades": 2}}})", {"blades", "2"}},
+      {R"({"type": "setup", "setup": {"lens": {"file": "achromat_100mm"}}})", {"file", "thin_mm"}},
+      {R"({"type": "setup", "setup": {"f_number": null}})", {"f_number", "missing"}},
+      {R"({"type": "setup", "setup": {"film": {"tilt_rad": 1.5}}})", {"tilt_rad", "1.5", "pi/3"}},
       {R"({"type": "redo"})", {"redo", "no event"}},
   };
   for (const auto& [event, words] : cases) {

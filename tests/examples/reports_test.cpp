@@ -218,7 +218,7 @@ class Reports : public Programs, public testing::WithParamInterface<Reporter> {
                                       "GCAT NOWHERE\nFTYP 1 0 2 2 0 0 0\nYFLN 0.0 6.0\n"));
     write("thin.json", R"({"scene": "town", "lens": {"thin_mm": 50, "f_number": 4}, "size": [8, 8], "events": [
       {"type": "add_point", "pixel": [4, 7]}, {"type": "add_point", "pixel": [4, 0]}, {"type": "zoom"}, {"type": "still"},
-      {"type": "f_number", "f_number": 1}]})");
+      {"type": "setup", "setup": {"f_number": 1}}]})");
     write("thick.json", R"({"scene": "town", "lens": "tessar_100mm_f2.8", "size": [8, 8], "events": [
       {"type": "add_point", "position_mm": [0, 0, 1e6]}]})");
     write("bad.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [

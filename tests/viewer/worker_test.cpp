@@ -20,19 +20,22 @@ std::shared_ptr<const Snapshot> rest(const Worker& worker) {
 TEST(ViewWorker, DrawingsFollowChangesWhileTheMouseRests) {
   SessionOptions options;
   options.input.scene = "town", options.input.width = 160, options.input.height = 120;
-  options.lens = {.thin_mm = 50, .f_number = 1};
+  options.setup.lens.thin_mm = 50, options.setup.f_number = 1;
   Worker worker(options, nullptr);
   worker.look_at({25, 40});
   const auto round = rest(worker);
-  worker.send({{"type", "f_number"}, {"f_number", 1.6}});
+  const auto patch = [&](const char* setup) {
+    worker.send({{"type", "setup"}, {"setup", examples::Json::parse(setup)}});
+  };
+  patch(R"({"f_number": 1.6})");
   const auto small = rest(worker);
   EXPECT_NEAR(small->bokeh.width_px / round->bokeh.width_px, 0.625, 0.03);
   EXPECT_NE(*small->blur, *round->blur);
-  worker.send({{"type", "iris"}, {"blades", 5}});
+  patch(R"({"iris": {"blades": 5}})");
   EXPECT_NE(rest(worker)->bokeh.values, small->bokeh.values);
 
   // A lens that cannot serve the picture: no picture and no map are shown as its own.
-  worker.send({{"type", "lens"}, {"lens", {{"thin_mm", 5000}, {"f_number", 0.5}}}});
+  patch(R"({"f_number": 0.5, "lens": {"thin_mm": 5000}})");
   const auto huge = rest(worker);
   EXPECT_NE(huge->problem, "");
   EXPECT_FALSE(huge->frame.still);

@@ -149,7 +149,7 @@ class PETZVAL_API LensRays {
   /// Normalisation of the camera.
   ///
   /// @param camera       the lens camera; its film must not travel
-  /// @param layers       the layer camera; its pixels are those of the film, or equal parts of them
+  /// @param layers       the layer camera, with as many pixels as the film, or a whole multiple in both directions
   /// @param points       pupil points, `options.set_count` sets of equal size
   /// @param wavelengths  one wavelength, or the wavelengths of red, green and blue; empty: the primary wavelength
   /// @param options      nearest depth, sets and threads

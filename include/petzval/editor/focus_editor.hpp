@@ -17,6 +17,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/focus/focus_point.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval {
@@ -31,14 +32,6 @@ enum class FocusServe : std::uint8_t {
 
 /// "distance", "film", "tilt", "surface".
 PETZVAL_API std::string_view name(FocusServe serve) noexcept;
-
-/// The lens that a FocusEditor requests from its scene.
-struct FocusLensChoice {
-  std::string name = {};  ///< name or path of a lens; empty: a thin lens
-  double thin_mm = 0;     ///< focal length of the thin lens
-  double f_number = 0;    ///< f-number of the thin lens; 0 for other lenses, which the editor stops down itself
-  bool rgb = false;       ///< the lens is compiled for the d line and for red, green and blue, in this order
-};
 
 /// A surface point of the scene.
 struct FocusPlace {
@@ -58,8 +51,8 @@ struct FocusScene {
   /// Pose of the lens frame in the scene frame: centre of the entrance pupil (mm), and unit vectors along x, y and z of
   /// the lens frame. The scene lies in front of the lens, towards -back.
   Vec3<double> position{0, 0, 0}, right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};
-  /// Compiles a lens, wide open.
-  std::function<Lens(const FocusLensChoice&)> lens = {};
+  /// Compiles the lens of a set-up, wide open: for example compile() of formats/lens_file.hpp.
+  std::function<Lens(const CameraSetup&)> lens = {};
   /// The first surface on a ray from the entrance pupil (scene frame); nullopt if its depth is unknown. The ray is the
   /// chief ray of a pixel, through the lens of the state.
   std::function<std::optional<FocusPlace>(const Ray<double>& ray, double time_s)> place = {};
@@ -81,52 +74,42 @@ struct FocusMark {
   std::optional<Vec2<double>> raster = {};  ///< raster position of the chief ray
 };
 
-/// The state of a FocusEditor: a lens, a film and their camera.
+/// The state of a FocusEditor: a camera and its set-up.
 struct PETZVAL_API FocusEditorState {
-  FocusLensChoice choice = {};
-  Lens lens;       ///< with its iris, stopped down and focused
-  Film film = {};  ///< with its size, tilt and swing; z_mm is set
-  BokehControls bokeh = {};
-  ExpressiveLens expressive = {};
-  std::optional<FocalSurface> surface = {};     ///< for FocusServe::surface
-  std::vector<FocalPoint> surface_points = {};  ///< that the surface passes through
-  FocalSurfaceOptions surface_options = {};
+  /// The set-up with all members that the editor computes: the focus, the film with its tilt, the points of the focal
+  /// surface, and the model. Thin lenses are of ModelKind::thin, lenses with a focal surface or with aberrations of
+  /// their own of ModelKind::thick, others of ModelKind::exact_float.
+  CameraSetup setup = {};
+  Lens lens;  ///< as prepared() for `setup`
+  /// The camera of `setup`. The first call makes the camera in some ms; copies of the state share the camera.
+  /// @throws Error as Camera
+  std::function<const Camera&()> camera = {};
+  std::optional<FocalSurface> surface = {};  ///< for FocusServe::surface
   FocusServe serve = FocusServe::distance;
-  double f_number = 0;        ///< f-number of the lens at infinity
-  bool f_number_set = false;  ///< false: the lens is wide open
-  double focus_mm = 0;        ///< distance in focus on the axis, from the front vertex; may be infinite
+  double f_number = 0;  ///< f-number of the lens at infinity
+  double focus_mm = 0;  ///< distance in focus on the axis, from the front vertex; may be infinite
   /// "solved", or the reason why the points are not served: the name of a FocusStatus, AutofocusStatus or
   /// TiltFitStatus.
   std::string_view status = "solved";
   double time_s = 0;
   std::vector<FocusMark> targets = {};
 
-  /// The camera of the state as the editor made it: of lens, film and camera_options(). Copies of the state share it.
-  /// The first call makes it, which takes some ms.
-  ///
-  /// @throws Error as Camera
-  std::function<const Camera&()> camera = {};
-
   /// True if the lens is thin and has no thickness, colour or aberrations of its own.
-  bool thin() const noexcept { return choice.name.empty(); }
+  bool thin() const noexcept { return setup.lens.thin_mm > 0; }
   /// First-order blur of scene points (lens frame) on the film or the focal surface: signed diameters in pixels, NaN
   /// for points without an image.
   std::vector<double> first_order_blurs_px(std::span<const ScenePoint> points) const;
-  /// Options of the camera: thin lenses are of ModelKind::thin, lenses with a focal surface or with aberrations of
-  /// their own of ModelKind::thick, others of ModelKind::exact_float; unity_on_axis.
-  ///
-  /// @throws Error if the focal surface of a thin lens cannot be made
-  CameraOptions camera_options() const;
 };
 
-/// Interactive control of focus, without a window: events in, a lens and a film out.
+/// Interactive control of focus, without a window: events in, a camera out.
 ///
 /// Events are JSON objects with a "type". A refused event throws Error and changes nothing.
 ///
-///     FocusEditor editor(scene, {.thin_mm = 50, .f_number = 2});
+///     FocusEditor editor(scene, {.lens = {.thin_mm = 50}, .f_number = 2});
 ///     editor.apply(R"({"type": "add_point", "id": "eye", "pixel": [410, 220]})");
 ///     editor.apply(R"({"type": "add_point", "id": "hand", "pixel": [300, 480], "blur_px": 4})");
 ///     editor.apply(R"({"type": "serve", "by": "tilt"})");
+///     editor.apply(R"({"type": "setup", "setup": {"f_number": 2.8, "iris": {"blades": 6}}})");
 ///     const Camera& camera = editor.state().camera();
 ///
 /// Types and keys:
@@ -136,16 +119,12 @@ struct PETZVAL_API FocusEditorState {
 /// - move_point: id; pixel, or position_mm with at_infinity
 /// - set_point: id; weight, blur_px, extent_stops (null: none)
 /// - remove_point: id
-/// - serve: by ("distance", "film", "tilt", "surface"); for surfaces kind ("affine", "shepard") and beta
-/// - focus: distance_mm from the front vertex (null: infinity); changes to serve by distance
-/// - f_number: f_number (null: wide open)
-/// - iris: blades, roundness, rotation_deg
-/// - bokeh: lens_ratio, rate_of_change, keep_light, weight_distribution, weight_strength
-/// - expressive: power_spline [[radius, power], ...], curvature_points [[x, y, offset], ...] (mm), dispersion,
-///   from_lens
-/// - lens: lens (a name, or an object with thin_mm and f_number)
-/// - colour: rgb (true: separate rays of red, green and blue)
-/// - tilt: tilt_deg, swing_deg of the film, by hand; changes to serve by distance
+/// - serve: by ("distance", "film", "tilt", "surface")
+/// - setup: setup, a JSON merge patch (RFC 7396) of the set-up in the format of to_json(), for lens, f_number, iris,
+///   focus_mm from the front vertex (null: infinity), film.tilt_rad and swing_rad (up to 60 degrees), camera.bokeh
+///   without blades, camera.expressive, and kind and beta of focal_surface. The editor sets the other members. focus_mm
+///   and film change to serve by distance. Another lens: {"lens": {"file": "tele.json", "thin_mm": null}}
+/// - expressive: from_lens, the factor of the lens's own aberrations in camera.expressive
 /// - weighting: nearer (weights are divided by depth), fade (points outside the picture fade), fade_s (time constant)
 /// - key: time_s; keeps the places, weights, blurs and extents of all points, and the distance, as keys
 /// - time: time_s; moves all points to their keys at this time
@@ -160,11 +139,12 @@ struct PETZVAL_API FocusEditorState {
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 4.
 class PETZVAL_API FocusEditor {
  public:
-  /// Starts with a lens focused at infinity, without points, served by distance.
+  /// Starts without points, served by distance.
   ///
+  /// @param setup  the lens and other members that events of the type setup can set; others are not used
   /// @throws Error if the scene has no pixels, angle or pose that is valid, or no function `lens`; if the lens cannot
   ///               be compiled
-  FocusEditor(FocusScene scene, const FocusLensChoice& lens);
+  FocusEditor(FocusScene scene, const CameraSetup& setup);
   ~FocusEditor();
   FocusEditor(FocusEditor&&) noexcept;
   FocusEditor& operator=(FocusEditor&&) noexcept;
