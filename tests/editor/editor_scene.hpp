@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/analysis/colour.hpp"
 #include "petzval/editor/focus_editor.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

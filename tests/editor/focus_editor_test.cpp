@@ -50,20 +50,6 @@ TEST(FocusEditor, ShowsTheAngleOfTheScene) {
   }
 }
 
-TEST(FocusEditor, UprightFilmHasTheLeastSquaresOfTheBlurs) {
-  FocusEditor editor(wall_scene(), thin_50());
-  editor.apply(R"({"type": "add_point", "position_mm": [0, 0, -2000], "weight": 3})");
-  editor.apply(R"({"type": "add_point", "position_mm": [0, 100, -5000]})");
-  editor.apply(R"({"type": "serve", "by": "film"})");
-  double squares = 0, moment = 0;
-  for (const auto& [distance, weight] : {std::pair{2000.0, 3.0}, {5000.0, 1.0}}) {
-    const double cone = 25 / image_of(distance), w = weight * cone * cone;
-    squares += w, moment += w * image_of(distance);
-  }
-  EXPECT_NEAR(editor.state().setup.film.z(), moment / squares, 1e-9);
-  EXPECT_LT(*editor.state().targets[0].blur_px * *editor.state().targets[1].blur_px, 0);
-}
-
 TEST(FocusEditor, TiltedFilmMeetsThreePoints) {
   FocusEditor editor(wall_scene(), thin_50());
   for (const char* const pixel : {"[100, 300]", "[700, 200]", "[400, 560]"}) {
@@ -294,8 +280,7 @@ TEST(FocusEditor, SetUpMakesTheCameraOfTheState) {
       for (const double u : {0.1, 0.5, 0.8}) {
         const CameraSample sample{.film = {7 * u, 4 - 6 * u}, .pupil_u = u, .pupil_v = 1 - u};
         const CameraRay one = editor.state().camera().sample(sample), two = again.sample(sample);
-        EXPECT_EQ(one.ray.origin, two.ray.origin) << by;
-        EXPECT_EQ(one.ray.direction, two.ray.direction) << by;
+        EXPECT_TRUE(one.ray.origin == two.ray.origin && one.ray.direction == two.ray.direction) << by;
         EXPECT_EQ(one.weight, two.weight) << by;
       }
     }

@@ -56,12 +56,13 @@ json patch(const char* setup) { return {{"type", "setup"}, {"setup", json::parse
 double image_of(double distance) { return 50 * distance / (distance - 50); }
 
 TEST_F(ViewProgram, ClicksFocusAThinLensByItsFormula) {
-  const std::vector<json> states = replay(files(), {{{"type", "add_point"}, {"id", "left"}, {"pixel", {20, 30}}},
-                                                    {{"type", "add_point"}, {"id", 2}, {"pixel", {70, 40}}},
-                                                    {{"type", "serve"}, {"by", "film"}},
-                                                    {{"type", "add_point"}, {"id", "sky"}, {"pixel", {40, 3}}},
-                                                    {{"type", "add_point"}, {"id", "hole"}, {"pixel", {2, 58}}},
-                                                    {{"type", "undo"}}});
+  const std::vector<json> states =
+      replay(files(), {{{"type", "add_point"}, {"id", "left"}, {"pixel", {20, 30}}},
+                       {{"type", "add_point"}, {"id", 2}, {"pixel", {70, 40}}, {"weight", 3}},
+                       {{"type", "serve"}, {"by", "film"}},
+                       {{"type", "add_point"}, {"id", "sky"}, {"pixel", {40, 3}}},
+                       {{"type", "add_point"}, {"id", "hole"}, {"pixel", {2, 58}}},
+                       {{"type", "undo"}}});
   ASSERT_EQ(states.size(), 6u);
   EXPECT_NEAR(states[0]["film"]["z_mm"].get<double>(), image_of(2000), 1e-9);
   EXPECT_NEAR(states[0]["focus_mm"].get<double>(), 2000, 1e-3);
@@ -71,7 +72,7 @@ TEST_F(ViewProgram, ClicksFocusAThinLensByItsFormula) {
   EXPECT_NEAR(states[1]["film"]["z_mm"].get<double>(), image_of(5000), 1e-9);
   EXPECT_EQ(states[1]["targets"][1]["id"], 2);
   // Least squares of the blurs: 25 mm (z - z_i) / z_i.
-  const double a = std::pow(image_of(2000), -2), b = std::pow(image_of(5000), -2);
+  const double a = std::pow(image_of(2000), -2), b = 3 * std::pow(image_of(5000), -2);
   const double film = (a * image_of(2000) + b * image_of(5000)) / (a + b);
   EXPECT_NEAR(states[2]["film"]["z_mm"].get<double>(), film, 1e-9);
   const double pixel_mm = 2 * std::tan(petzval::radians(15)) * film / 60;

@@ -24,18 +24,15 @@ TEST(ViewWorker, DrawingsFollowChangesWhileTheMouseRests) {
   Worker worker(options, nullptr);
   worker.look_at({25, 40});
   const auto round = rest(worker);
-  const auto patch = [&](const char* setup) {
-    worker.send({{"type", "setup"}, {"setup", examples::Json::parse(setup)}});
-  };
-  patch(R"({"f_number": 1.6})");
+  worker.send({{"type", "setup"}, {"setup", {{"f_number", 1.6}}}});
   const auto small = rest(worker);
   EXPECT_NEAR(small->bokeh.width_px / round->bokeh.width_px, 0.625, 0.03);
   EXPECT_NE(*small->blur, *round->blur);
-  patch(R"({"iris": {"blades": 5}})");
+  worker.send({{"type", "setup"}, {"setup", {{"iris", {{"blades", 5}}}}}});
   EXPECT_NE(rest(worker)->bokeh.values, small->bokeh.values);
 
   // A lens that cannot serve the picture: no picture and no map are shown as its own.
-  patch(R"({"f_number": 0.5, "lens": {"thin_mm": 5000}})");
+  worker.send({{"type", "setup"}, {"setup", {{"f_number", 0.5}, {"lens", {{"thin_mm", 5000}}}}}});
   const auto huge = rest(worker);
   EXPECT_NE(huge->problem, "");
   EXPECT_FALSE(huge->frame.still);

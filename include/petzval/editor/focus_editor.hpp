@@ -81,7 +81,7 @@ struct PETZVAL_API FocusEditorState {
   /// their own of ModelKind::thick, others of ModelKind::exact_float.
   CameraSetup setup = {};
   Lens lens;  ///< as prepared() for `setup`
-  /// The camera of `setup`. The first call makes the camera in some ms; copies of the state share the camera.
+  /// The camera of `setup`. The first call makes it, in 2 to 80 ms; copies of the state share the camera.
   /// @throws Error as Camera
   std::function<const Camera&()> camera = {};
   std::optional<FocalSurface> surface = {};  ///< for FocusServe::surface
