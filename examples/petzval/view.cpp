@@ -3,11 +3,13 @@
 //
 //   petzval view --scene town double_gauss_52mm_f1.8
 //   petzval view --replay log.json --json --out out
+#include <cmath>
 #include <string>
 
 #include "commands.hpp"
 #include "layers/layer_input.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
@@ -17,11 +19,30 @@
 #include "viewer/session.hpp"
 #include "viewer/window.hpp"
 
+namespace {
+
+/// The set-up of a file. The editor measures the distance in focus from the front vertex.
+petzval::CameraSetup read_setup(const std::string& file) {
+  petzval::CameraSetup setup =
+      examples::for_flag("--setup", [&] { return petzval::camera_setup(examples::read_text(file), file); });
+  auto& wavelengths = setup.lens.wavelengths_nm;
+  if (wavelengths.empty()) wavelengths = {petzval::d_line_nm};
+  if (setup.focus_mm && std::isfinite(*setup.focus_mm)) {
+    const petzval::Lens lens = petzval::prepared(setup, examples::load_lens(setup, wavelengths).lens);
+    *setup.focus_mm -= petzval::origin_z(lens, setup.focus.origin);
+  }
+  setup.focus = {};
+  return setup;
+}
+
+}  // namespace
+
 int commands::view(int argc, char** argv) {
   viewer::WindowOptions window;
   viewer::ReplayOptions replay;
   lens_blur::InputFlags& input = window.session.input;
   petzval::LensSource lens;
+  std::string setup_file;
   double thin_mm = 0, f_number = 0;
   examples::App app(
       "Lens blur in a window: click into the picture to focus. --replay computes the same without a window from a log "
@@ -31,6 +52,11 @@ int commands::view(int argc, char** argv) {
   lens_blur::add_input(app, input);
   app.add_option("LENS", lens.file, "shipped lens (petzval lenses) or lens file")
       ->default_str("double_gauss_52mm_f1.8");
+  app.add_option(
+         "--setup", setup_file,
+         "set-up of the camera: a report of render, blur or psf, or a file with its setup. Lens, f-number, iris, "
+         "focus, tilt and swing, bokeh and aberrations are used; LENS, --thin-lens and --f-number replace them")
+      ->type_name("REPORT.json");
   auto* thin = examples::add_thin_lens(app, thin_mm);
   examples::add_number(app, "--f-number", f_number, examples::positive_number, "f-number of the thin lens, or of LENS")
       ->default_str("LENS: wide open");
@@ -66,7 +92,7 @@ int commands::view(int argc, char** argv) {
     window.session.threads = examples::threads();
     if (!replay.log_file.empty()) {
       const bool scene_given = !input.scene.empty() || !input.image.empty() || !input.deep.empty();
-      if (scene_given || !lens.file.empty() || thin->given()) {
+      if (scene_given || !lens.file.empty() || thin->given() || !setup_file.empty()) {
         throw petzval::Error("--replay: the log names the scene and the lens; must be used without them");
       }
       const examples::Json events = examples::read_json(replay.log_file);
@@ -84,12 +110,16 @@ int commands::view(int argc, char** argv) {
       return;
     }
     if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";
+    petzval::CameraSetup& setup = window.session.setup;
+    if (!setup_file.empty()) setup = read_setup(setup_file);
     if (thin->given()) {
       if (!lens.file.empty()) throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
       if (!(f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
-      window.session.setup.lens.thin_mm = thin_mm, window.session.setup.f_number = f_number;
+      setup.lens = {.thin_mm = thin_mm}, setup.f_number = f_number;
     } else {
-      window.session.setup.lens.file = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file;
+      if (!lens.file.empty() || setup_file.empty()) {
+        setup.lens = {.file = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file};
+      }
       if (f_number > 0) {
         window.first_events = {{{"type", "setup"}, {"setup", {{"f_number", f_number}}}}};
       }
