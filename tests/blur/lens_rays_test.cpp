@@ -275,8 +275,7 @@ TEST(CameraRays, HaveTheIrradianceOfTheCameraInSmallImages) {
 }
 
 TEST(CameraRays, PartsOfFilmPixelsEqualAFineFilm) {
-  Film fine = film;
-  fine.columns *= 2, fine.rows *= 2;
+  const Film fine{.columns = 2 * film.columns, .rows = 2 * film.rows};
   const Camera camera(double_gauss(), film), of_fine(double_gauss(), fine);
   std::vector<LayerRay> rays[2] = {std::vector<LayerRay>(64), std::vector<LayerRay>(64)};
   LensRays::of(camera, layer_camera(of_fine), vogel_points(64)).at(0, 701, 95, rays[0]);

@@ -270,13 +270,16 @@ TEST(FocusEditor, CameraOfAThinLensIsSharpAtThePoints) {
 TEST(FocusEditor, SetUpMakesTheCameraOfTheState) {
   const FocusScene scene = wall_scene();
   for (const CameraSetup& lens : {thin_50(), CameraSetup{.lens = {.file = "double_gauss_52mm_f1.8"}}}) {
-    for (const char* const by : {"distance", "film", "tilt", "surface"}) {
+    for (const std::string by : {"distance", "film", "tilt", "surface"}) {
       FocusEditor editor(scene, lens);
-      editor.apply(R"({"type": "add_point", "pixel": [300, 300], "blur_px": 2})");
-      editor.apply(R"({"type": "add_point", "pixel": [500, 200], "extent_stops": 1})");
-      editor.apply(std::string(R"({"type": "serve", "by": ")") + by + "\"}");
+      editor.replay(R"([{"type": "add_point", "pixel": [300, 300], "blur_px": 2},
+                        {"type": "add_point", "pixel": [500, 200], "extent_stops": 1},
+                        {"type": "setup", "setup": {"f_number": 4.5, "iris": {"blades": 5}}},
+                        {"type": "serve", "by": ")" +
+                    by + "\"}]");
       const CameraSetup setup = camera_setup(to_json(editor.state().setup), by);
       const Camera again = camera(setup, prepared(setup, scene.lens(setup)));
+      EXPECT_EQ(setup.focus_mm, editor.state().focus_mm) << by;
       for (const double u : {0.1, 0.5, 0.8}) {
         const CameraSample sample{.film = {7 * u, 4 - 6 * u}, .pupil_u = u, .pupil_v = 1 - u};
         const CameraRay one = editor.state().camera().sample(sample), two = again.sample(sample);
