@@ -73,16 +73,10 @@ void replay(const ReplayOptions& options) {
     std::string name = std::to_string(number);
     name.insert(0, 4 - std::min<std::size_t>(name.size(), 4), '0');
     const std::filesystem::path stem = std::filesystem::path(options.out_folder) / ("event_" + name);
-    if (still) {
-      const std::string points_file = stem.string() + "_points.json";
-      const Json points = session.surface_points();
-      if (!points.is_null() && !options.out_folder.empty()) {
-        examples::write_text(points_file, points.dump(1) + '\n');
-      }
-      state["command"] = session.blur_command(points_file);
-      if (!options.out_folder.empty()) {
-        examples::write_text(stem.string() + "_setup.json", petzval::to_json(session.editor().state().setup) + '\n');
-      }
+    if (still && !options.out_folder.empty()) {
+      const std::string setup_file = stem.string() + "_setup.json";
+      examples::write_text(setup_file, petzval::to_json(session.editor().state().setup) + '\n');
+      state["command"] = session.blur_command(setup_file);
     }
     if (!error.empty()) state["error"] = error;
     if (options.json) {

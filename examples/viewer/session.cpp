@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -50,7 +48,7 @@ std::string quoted(const std::string& word) {
 }
 
 /// A file for a command line; "./" keeps a name from being read as a flag.
-std::string quoted_file(const std::string& file) { return quoted(file.starts_with('-') ? "./" + file : file); }
+std::string as_file(const std::string& file) { return file.starts_with('-') ? "./" + file : file; }
 
 using Input = lens_blur::InputFlags;
 /// Texts of a log, with their keys.
@@ -357,89 +355,21 @@ Json Session::log() const {
   return json;
 }
 
-Json Session::surface_points() const {
-  const petzval::FocusEditorState& state = editor_->state();
-  if (!state.surface) return nullptr;
-  const double entrance_z = petzval::pupils(state.lens).entrance.z;
-  Json points = Json::array();
-  for (const petzval::FocalPoint& point : state.setup.focal_points) {
-    const petzval::Vec2<double> pixel = state.setup.film.raster(point.film_point);
-    Json json{{"pixel", {pixel.x, pixel.y}}};
-    if (point.inverse_distance) {
-      json["distance_mm"] = examples::finite_or_null(1 / *point.inverse_distance - entrance_z);
-      json["blur_px"] = point.blur_mm / state.setup.film.pixel_mm();
-    }
-    if (point.extent_stops) json["extent_stops"] = *point.extent_stops;
-    json["weight"] = point.weight, json["fade"] = point.fade;
-    points.push_back(std::move(json));
-  }
-  return points;
-}
-
-std::string Session::blur_command(const std::string& points_file) const {
-  const petzval::FocusEditorState& state = editor_->state();
-  const petzval::CameraSetup& setup = state.setup;
+std::string Session::blur_command(const std::string& setup_file) const {
   const lens_blur::InputFlags& input = options_.input;
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out << "petzval blur";
-  const auto add = [&](const char* flag, const std::string& value) { out << ' ' << flag << ' ' << quoted(value); };
-  const auto add_if = [&](bool given, const char* flag, const std::string& value) {
-    if (given) add(flag, value);
-  };
-  const auto add_file = [&](const std::string& flag, const std::string& file) {
-    out << ' ' << flag << ' ' << quoted_file(file);
+  std::string command = "petzval blur";
+  const auto add = [&](std::string flag, const std::string& value) {
+    std::ranges::replace(flag, '_', '-');
+    command += " --" + flag + ' ' + quoted(value);
   };
   for (const auto& [key, member] : texts) {
-    std::string flag = std::string("--") + key;
-    std::ranges::replace(flag, '_', '-');
-    if (input.*member != Input().*member) add_file(flag, input.*member);
+    if (input.*member != Input().*member) add(key, as_file(input.*member));
   }
-  add_if(input.near_mm > 0, "--near", exact(input.near_mm));
-  add_if(input.near_mm > 0, "--far", exact(input.far_mm));
-  add_if(input_.scene() != nullptr, "--size", std::to_string(input_.columns()) + 'x' + std::to_string(input_.rows()));
-  add_if(options_.layers != 4, "--layers", std::to_string(options_.layers));
-  if (state.thin()) {
-    add("--thin-lens", exact(setup.lens.thin_mm));
-  } else {
-    out << ' ' << quoted_file(lens_name(state));
-    add_if(!setup.lens.configuration.empty(), "--configuration", setup.lens.configuration);
-  }
-  add_if(setup.f_number.has_value(), "--f-number", exact(state.f_number));
-  add_if(options_.fov_deg > 0, "--fov", exact(options_.fov_deg));
-  add("--focus", exact(state.focus_mm));
-  add_if(setup.film.tilt_rad != 0, "--tilt", exact(examples::exact_degrees(setup.film.tilt_rad)));
-  add_if(setup.film.swing_rad != 0, "--swing", exact(examples::exact_degrees(setup.film.swing_rad)));
-  add_if(setup.lens.wavelengths_nm.size() == 4, "--wavelengths", "rgb");
-  const petzval::Iris& iris = state.lens.iris();
-  if (iris.blades > 0) {
-    add("--blades", std::to_string(iris.blades));
-    add_if(iris.roundness != 0, "--roundness", exact(iris.roundness));
-    add_if(iris.rotation_rad != 0, "--iris-rotation", exact(examples::exact_degrees(iris.rotation_rad)));
-  }
-  const auto& [bokeh, expressive] = std::tie(setup.camera.bokeh, setup.camera.expressive);
-  add_if(bokeh.lens_ratio != 1, "--lens-ratio", exact(bokeh.lens_ratio));
-  add_if(bokeh.rate_of_change != 0, "--rate-of-change", exact(bokeh.rate_of_change));
-  if (bokeh.keep_light) out << " --keep-light";
-  if (!bokeh.edge().even()) {
-    add("--weight-distribution", exact(bokeh.weight_distribution));
-    add("--weight-strength", exact(bokeh.weight_strength));
-  }
-  for (const petzval::PowerKnot& knot : expressive.power) {
-    add("--power-spline", exact(knot.radius) + ':' + exact(knot.power));
-  }
-  for (const petzval::FilmOffset& offset : expressive.film_offsets) {
-    add("--curvature-points",
-        exact(offset.film_point.x) + ',' + exact(offset.film_point.y) + ':' + exact(offset.offset_mm));
-  }
-  if (!expressive.dispersion.empty()) add("--dispersion", exact(expressive.dispersion.front()));
-  if (state.surface) {
-    add_file("--points", points_file);
-    add("--kind", std::string(name(setup.focal_surface.kind)));
-    add("--beta", exact(setup.focal_surface.beta));
-  }
-  out << " --out out";
-  return out.str();
+  if (input.near_mm > 0) add("near", exact(input.near_mm)), add("far", exact(input.far_mm));
+  if (options_.layers != 4) add("layers", std::to_string(options_.layers));
+  if (options_.fov_deg > 0) add("fov", exact(options_.fov_deg));
+  add("setup", as_file(setup_file));
+  return command + " --out out";
 }
 
 examples::Json events_of(const Json& log, const std::string& where) {

@@ -97,10 +97,8 @@ class Session {
   examples::Json state_json(const Frame& frame) const;
   /// The scene, the lens and all events: the file of --replay.
   examples::Json log() const;
-  /// The command line that makes the still picture. points_file: where a focal surface has its points.
-  std::string blur_command(const std::string& points_file) const;
-  /// The points of the focal surface, for `petzval blur --points`; null without a surface.
-  examples::Json surface_points() const;
+  /// The command line that makes the still picture. setup_file: a file with the set-up of the state.
+  std::string blur_command(const std::string& setup_file) const;
 
  private:
   petzval::Lens load(const petzval::CameraSetup& setup);

@@ -216,11 +216,9 @@ void Worker::export_files(const std::filesystem::path& folder) {
     const Frame still = session_.still();
     examples::write_picture(still.picture, petzval::to_srgb8(still.picture), {"exr", "png"}, folder / "view");
     examples::write_text(folder / "view.json", session_.log().dump(1) + '\n');
-    examples::write_text(folder / "setup.json", petzval::to_json(session_.editor().state().setup) + '\n');
-    const Json points = session_.surface_points();
-    const std::string points_file = (folder / "points.json").string();
-    if (!points.is_null()) examples::write_text(points_file, points.dump(1) + '\n');
-    examples::write_text(folder / "blur.sh", session_.blur_command(points_file) + '\n');
+    const std::string setup_file = (folder / "setup.json").string();
+    examples::write_text(setup_file, petzval::to_json(session_.editor().state().setup) + '\n');
+    examples::write_text(folder / "blur.sh", session_.blur_command(setup_file) + '\n');
     next.message = "written to " + std::filesystem::absolute(folder).lexically_normal().string() +
                    ": view.png, view.exr, view.json (events), setup.json (camera), blur.sh (command line)";
   } catch (const petzval::Error& error) {

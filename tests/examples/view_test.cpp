@@ -195,7 +195,7 @@ TEST_F(ViewProgram, CommandOfALensFileNamedLikeAFlagWorks) {
   std::filesystem::copy_file(lens("double_gauss_52mm_f1.8"), path("--help.json"));
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder);
-  const json still = replay(town("--help.json"), {{{"type", "still"}}}).back();
+  const json still = replay(town("--help.json"), {{{"type", "still"}}}, {"--out", "view"}).back();
   const std::string command = still["command"].get<std::string>();
   const std::string program = std::string(PETZVAL_TEST_PROGRAMS) + '/';
   const int status = std::system((program + command + " --rays 4 > out.txt 2>&1").c_str());
