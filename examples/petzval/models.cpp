@@ -53,11 +53,12 @@ int commands::models(int argc, char** argv) {
   examples::App app(
       "Compares every model of a lens with exact rays in double. Prints a row for each model: errors of rays on the "
       "film (RMS, 99 %, maximum), error of the pupil's shape (symmetric difference divided by area), largest error of "
-      "the exposure over the film, ns per ray in batches on one thread, and set-up time. Ray errors cover planes from "
+      "the exposure over the film, ns per ray in batches on one thread, set-up time, and the expected time of a ray in "
+      "rays of a thin lens (cost), which is the same on all machines. Ray errors cover planes from "
       "half the focus distance to infinity, and the plane in focus; at infinity they are angles times the focal "
       "length. Then chooses the fastest model for ray errors of at most 4, 1, 0.25 and 0.05 pixels and pupil errors "
       "of at most 10 %. --json prints only the rows.\n"
-      "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
+      "front: no other model has both a lower cost and a lower error (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "petzval models");
   examples::add_model_options(app, options);

@@ -167,8 +167,8 @@ ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, con
                        " of white; the bias may be at most " + number(noise / 10, 2) + "; depths " + in_words(range));
   if (best) {
     result.model = best->model;
-    result.why.push_back(std::string(petzval::name(best->model)) + ": bias " + number(best_bias, 2) + ", " +
-                         number(best->ns_per_ray, 2) + " ns per ray");
+    result.why.push_back(std::string(petzval::name(best->model)) + ": bias " + number(best_bias, 2) + ", cost " +
+                         number(best->cost, 2) + " (" + number(best->ns_per_ray, 2) + " ns per ray)");
   } else {
     result.model = petzval::ModelKind::exact_double;
     result.why.push_back("exact_double: all other models have too much bias");

@@ -90,7 +90,8 @@ std::vector<Entry> entries(const Report& r, const petzval::LensReport::Section& 
     rows.push_back({"entrance pupil, diameter (image of the rim of the stop)", "mm", entrance.diameter});
     rows.push_back({"exit pupil, z", "mm", exit.z});
     rows.push_back({"exit pupil, diameter", "mm", exit.diameter});
-    if (main) rows.push_back({"f-number (exact ray to the rim of the stop)", "", *r.first_order.f_number});
+    if (main && r.first_order.f_number)
+      rows.push_back({"f-number (exact ray to the rim of the stop)", "", *r.first_order.f_number});
     rows.push_back(
         {"f-number, paraxial (EFL / entrance pupil)", "", std::abs(first.effective_focal_length) / entrance.diameter});
   }
@@ -157,17 +158,18 @@ Json to_json(const Report& r, const petzval::LensReport& aberrations) {
                 {"computed", value(computed_aperture(lens, r.loaded.prescription.design, r.main()))}};
   }
   const ReportSubject& subject = r.subject;
-  const Json stated_conditions{{"design_aperture", aperture},
-                               {"subject_distance_mm", finite_or_null(subject.distance_mm)},
-                               {"subject_distance_of_file", subject.distance_of_file},
-                               {"distance_from", petzval::name(subject.focus.origin)},
-                               {"film", subject.film_of_file ? "file" : "focus"},
-                               {"criterion", subject.film_of_file ? Json() : Json(petzval::name(subject.focus.criterion))},
-                               {"wavelengths_nm", subject.light.wavelengths_nm},
-                               {"wavelength_weights", subject.light.weights},
-                               {"wavelengths_of_file", subject.light.of_file},
-                               {"fields_deg", subject.fields.degrees},
-                               {"fields_of_file", subject.fields.of_file}};
+  const Json stated_conditions{
+      {"design_aperture", aperture},
+      {"subject_distance_mm", finite_or_null(subject.distance_mm)},
+      {"subject_distance_of_file", subject.distance_of_file},
+      {"distance_from", petzval::name(subject.focus.origin)},
+      {"film", subject.film_of_file ? "file" : "focus"},
+      {"criterion", subject.film_of_file ? Json() : Json(petzval::name(subject.focus.criterion))},
+      {"wavelengths_nm", subject.light.wavelengths_nm},
+      {"wavelength_weights", subject.light.weights},
+      {"wavelengths_of_file", subject.light.of_file},
+      {"fields_deg", subject.fields.degrees},
+      {"fields_of_file", subject.fields.of_file}};
   Json warnings = Json::array(), findings = Json::array();
   const auto& imported = r.loaded.prescription.imported;
   for (std::size_t i = 0; imported && i < imported->warnings.size(); ++i) {

@@ -121,7 +121,8 @@ std::string to_csv(std::span<const ModelRow> rows) {
 
 std::string to_text(std::span<const ModelRow> rows) {
   std::ostringstream text;
-  text << "model          rms um    99% um    max um    rms px    max px     pupil  exposure    ns/ray  setup ms\n";
+  text << "model          rms um    99% um    max um    rms px    max px     pupil  exposure    ns/ray  setup ms    "
+          "cost\n";
   for (const ModelRow& row : rows) {
     text << std::left << std::setw(13) << petzval::name(row.model) << std::right;
     for (const double value : {row.rms_um, row.p99_um, row.max_um, row.rms_px, row.max_px}) {
@@ -130,8 +131,8 @@ std::string to_text(std::span<const ModelRow> rows) {
     for (const double value : {row.pupil_shape_error, row.exposure_error}) {
       text << std::setw(8) << number(100 * value, 3) << "% ";
     }
-    text << std::setw(8) << number(row.ns_per_ray, 3) << "  " << std::setw(8) << number(row.setup_ms, 3)
-         << (row.on_front ? "  front" : "") << '\n';
+    text << std::setw(8) << number(row.ns_per_ray, 3) << "  " << std::setw(8) << number(row.setup_ms, 3) << std::setw(8)
+         << number(row.cost, 3) << (row.on_front ? "  front" : "") << '\n';
   }
   return std::move(text).str();
 }

@@ -35,7 +35,7 @@ struct ModelRow {
   petzval::ModelKind model{};
   double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
   double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0, cost = 0;
-  bool on_front = false;  ///< no other row is faster and as accurate (max_um), or more accurate and as fast
+  bool on_front = false;  ///< no other row is as cheap and more accurate (max_um), or cheaper and as accurate
 };
 /// guarded: gives the bounds that are compared with budgets instead of the largest measured errors.
 std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,

@@ -161,8 +161,9 @@ PETZVAL_C_API petzval_status petzval_lens_get_text(const petzval_lens* lens, int
                                                    size_t capacity, size_t* length);
 /**
  * Copies a report of the lens as JSON, with a final 0, to a buffer: first-order data, pupils and aberrations for a
- * subject at the distance in focus. lib/docs/reports.md lists the keys (`report`). The report takes up to seconds,
- * without fields milliseconds; 1 MiB holds the report of three fields and wavelengths.
+ * subject at the distance in focus, or, if none was set, at the object distance of the lens file. lib/docs/reports.md
+ * lists the keys (`report`). The report takes up to seconds, without fields milliseconds; 1 MiB holds the report of
+ * three fields and wavelengths.
  *
  * - fields_deg: field angles towards +y, seen from the entrance pupil; may be NULL if count is 0
  * - threads: 0: 1

@@ -170,9 +170,10 @@ std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z, std:
 
 std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                                 Wavelength wavelength) {
+  const std::size_t w = lens.wavelength_index(wavelength);
   const auto height = [&](double field) -> std::optional<double> {
     const FieldPoint point{.field_rad = field, .z = subject_z};
-    const auto hit = analysis_detail::chief_point(lens, point, wavelength.index(lens.primary_wavelength()));
+    const auto hit = analysis_detail::chief_point(lens, point, w);
     if (!hit) return {};
     return hit->y;
   };

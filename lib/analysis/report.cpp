@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/spot_moments.hpp"
+#include "core/text.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -95,9 +96,14 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
     throw Error(lens.name() + ": wavelength_weights has " + std::to_string(weights.size()) + " values; must have " +
                 std::to_string(wavelengths));
   }
+  for (const double weight : weights) {
+    if (weight >= 0 && std::isfinite(weight)) continue;
+    throw Error(lens.name() + ": wavelength_weights: " + to_text(weight) + "; must be finite and not negative");
+  }
   std::vector<double> fields;
   r.largest_field.object_distance = lens.surfaces().front().vertex_z - z;
   for (const double field : r.conditions.fields_deg) {
+    if (!std::isfinite(field)) throw Error(lens.name() + ": fields_deg: " + to_text(field) + "; must be finite");
     fields.push_back(radians(field));
     r.largest_field.field_rad = std::max(r.largest_field.field_rad, std::abs(fields.back()));
   }

@@ -107,6 +107,8 @@ TEST(DistortionPercent, ScaleIsTheLimitOfSmallFields) {
     const auto found = distortion_percent(lens, far, fields);
     const double height = first_order(lens).effective_focal_length * std::tan(fields[0]);
     EXPECT_NEAR(*found[0].f_tan_theta_percent, 100 * (std::abs(*found[0].height_mm / height) - 1), 1e-5) << name;
+    const auto by_nm = distortion_percent(lens, far, fields, Wavelength::nm(lens.wavelengths_nm()[0]));
+    EXPECT_EQ(by_nm[0].height_mm, found[0].height_mm) << name;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -77,6 +78,8 @@ TEST(LensReport, NeedsAWeightForEachWavelengthAndAThread) {
   const Lens lens = double_gauss();
   testing::expect_error([&] { lens_report(lens, {.wavelength_weights = {1, 1}}); }, {"wavelength_weights", 2, 3});
   testing::expect_error([&] { lens_report(lens, {.threads = 0}); }, {"threads", 0});
+  testing::expect_error([&] { lens_report(lens, {.wavelength_weights = {1, -1, 1}}); }, {"wavelength_weights", -1});
+  testing::expect_error([&] { lens_report(lens, {.fields_deg = {1, NAN}}); }, {"fields_deg", "nan"});
 }
 
 }  // namespace report_test

@@ -93,11 +93,12 @@ struct LensReport {
 /// milliseconds. If a quantity fails, only quantities that are derived from it fail, too: MTF, through focus, encircled
 /// energy and lateral colour are derived from `spots`.
 ///
-/// @throws Error  if `threads` is below 1 or the number of weights differs from the number of compiled wavelengths
+/// @throws Error  if `threads` is below 1, a field is not finite, a weight is negative or not finite, or the number of
+///                weights differs from the number of compiled wavelengths
 PETZVAL_API LensReport lens_report(const Lens& lens, LensReport::Conditions conditions = {});
 
-/// The report as a JSON object. lib/docs/reports.md lists its keys; `failures` has the reason for each quantity without
-/// a value. Infinite numbers are null.
+/// The report as a JSON object. lib/docs/reports.md lists its keys; `failures` has the reasons for `seidel`,
+/// `paraxial_rays` and quantities by exact rays from `ray_fans` on that have no value. Infinite numbers are null.
 ///
 /// @throws Error  if the name of the lens is not UTF-8
 PETZVAL_API std::string to_json(const LensReport& report);

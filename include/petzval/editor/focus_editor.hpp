@@ -81,7 +81,8 @@ struct PETZVAL_API FocusEditorState {
   /// their own of ModelKind::thick, others of ModelKind::exact_float.
   CameraSetup setup = {};
   Lens lens;  ///< as prepared() for `setup`
-  /// The camera of `setup`. The first call makes it, in 2 to 80 ms; copies of the state share the camera.
+  /// The camera of `setup`. The first call makes it, in 2 to 80 ms; copies of the state share the camera, which lives
+  /// as long as one of them.
   /// @throws Error as Camera
   std::function<const Camera&()> camera = {};
   std::optional<FocalSurface> surface = {};  ///< for FocusServe::surface
@@ -110,7 +111,7 @@ struct PETZVAL_API FocusEditorState {
 ///     editor.apply(R"({"type": "add_point", "id": "hand", "pixel": [300, 480], "blur_px": 4})");
 ///     editor.apply(R"({"type": "serve", "by": "tilt"})");
 ///     editor.apply(R"({"type": "setup", "setup": {"f_number": 2.8, "iris": {"blades": 6}}})");
-///     const Camera& camera = editor.state().camera();
+///     const Camera camera = editor.state().camera();
 ///
 /// Types and keys:
 ///
