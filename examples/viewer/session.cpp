@@ -66,9 +66,9 @@ double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& p
 /// The words of a status of the editor.
 constexpr std::pair<std::string_view, const char*> words[] = {
     {"no_targets", "no point can be focused; the focus stays"},
-    {"unreachable", "the lens cannot focus there"},
+    {"unreachable", "the lens cannot focus at this distance"},
     {"afocal", "the lens has no focus"},
-    {"too_blurred", "the lens is never sharp there"},
+    {"too_blurred", "the lens is never sharp at this point"},
     {"least_tilt", "smallest tilt: the points allow others"},
     {"limited", "the film cannot tilt further"},
     {"not_converged", "no tilt was found for these points"},
@@ -76,7 +76,7 @@ constexpr std::pair<std::string_view, const char*> words[] = {
     {"hidden", "outside the picture"},
     {"no_weight", "shown only"},
     {"not_finite", "not a place"},
-    {"no_image", "the lens has no image of it"},
+    {"no_image", "the point has no image"},
     {"outlier", "left out"},
     {"no_rays", "no ray passes the lens"}};
 

@@ -48,7 +48,7 @@ class Work {
   std::vector<RayFate> fates_;
 };
 
-/// Times by tests/bench/camera_bench on an AMD EPYC (AVX2), divided by those of a thin lens.
+/// Times by tests/bench/camera_bench on an AMD EPYC (AVX2), divided by the time of a thin lens.
 constexpr double two_discs = 2.5, polynomial = 2.6, polynomial_term = 0.006;
 constexpr double exact = 2.4, sphere = 0.28, quadric = 0.8, asphere = 1.8, in_double = 2.2;
 

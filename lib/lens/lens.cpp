@@ -21,7 +21,7 @@ namespace petzval {
 
 namespace {
 
-/// Index of a wavelength in a list, within 1e-6 nm; the length of the list if it is not there.
+/// Index of a wavelength in a list, within 1e-6 nm; the length of the list if it has no such wavelength.
 std::size_t compiled(std::span<const double> list, double nm) noexcept {
   const auto found = std::ranges::find_if(list, [nm](double w) { return std::abs(w - nm) <= 1e-6; });
   return static_cast<std::size_t>(found - list.begin());

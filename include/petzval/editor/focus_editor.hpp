@@ -81,8 +81,7 @@ struct PETZVAL_API FocusEditorState {
   /// their own of ModelKind::thick, others of ModelKind::exact_float.
   CameraSetup setup = {};
   Lens lens;  ///< as prepared() for `setup`
-  /// The camera of `setup`. The first call makes it, in 2 to 80 ms; copies of the state share the camera, which lives
-  /// as long as one of them.
+  /// The camera of `setup`. The first call makes it, in 2 to 80 ms; copies of the state share and keep the camera.
   /// @throws Error as Camera
   std::function<const Camera&()> camera = {};
   std::optional<FocalSurface> surface = {};  ///< for FocusServe::surface
