@@ -29,12 +29,19 @@ Section section_of(const petzval::Lens& lens, const petzval::Film& film) {
   }
   constexpr int steps = 24;
   std::vector<Vec2<float>> rims;
+  double apart = 0;  // of thin elements, whose surfaces would overlap
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const double rim = std::min(surfaces[i].semi_diameter, widest);
     const bool stop = lens.stop() == i;
+    const bool glass_before = i > 0 && std::abs(lens.index(i)) > 1.01,
+               glass_behind = std::abs(lens.index(i + 1)) > 1.01;
+    const double edge = surfaces[i].vertex_z + apart + petzval::sag(lens, i, 0, rim);
+    if (glass_before && surfaces[i].vertex_z == surfaces[i - 1].vertex_z && edge < rims[i - 1].x) {
+      apart += rims[i - 1].x - edge;
+    }
     Polyline line;
     for (int k = -steps; k <= steps; ++k) {
-      const double y = rim * k / steps, z = surfaces[i].vertex_z + petzval::sag(lens, i, 0, y);
+      const double y = rim * k / steps, z = surfaces[i].vertex_z + apart + petzval::sag(lens, i, 0, y);
       if (std::isfinite(z)) line.push_back(at(z, y));
     }
     if (stop) {
@@ -43,14 +50,15 @@ Section section_of(const petzval::Lens& lens, const petzval::Film& film) {
       result.stop.push_back({{z, y}, {z, end}});
       result.stop.push_back({{z, -y}, {z, -end}});
     }
-    const bool glass_before = i > 0 && std::abs(lens.index(i)) > 1.01,
-               glass_behind = std::abs(lens.index(i + 1)) > 1.01;
     rims.push_back(line.empty() ? at(surfaces[i].vertex_z, rim) : line.back());
     if (glass_before) {
       const Vec2<float> a = rims[i - 1], b = rims[i];
       for (const float side : {1.0f, -1.0f}) result.surfaces.push_back({{a.x, side * a.y}, {b.x, side * b.y}});
     }
     if (glass_before || glass_behind || surfaces[i].mirror) result.surfaces.push_back(std::move(line));
+  }
+  for (Polyline& line : result.surfaces) {
+    for (Vec2<float>& point : line) point.x -= static_cast<float>(apart / 2);
   }
   const Vec3<double> up = film.up(), middle{0, 0, film.z()};
   const Vec3<double> top = middle + up * (film.height_mm / 2), bottom = middle - up * (film.height_mm / 2);
