@@ -357,10 +357,21 @@ class Job {
     }
   }
 
+  /// The --coatings of the picture; "setup": a coating of --setup without a name.
+  std::string coatings_used() const {
+    if (!options_.coatings.empty() || !setup_.camera.transmission) return options_.coatings;
+    if (!setup_.coating) return "file";
+    for (const char* name : {"none", "mgf2"}) {
+      if (setup_.coating == examples::coating_named(name)) return name;
+    }
+    return "setup";
+  }
   Json description_of_numbers(const petzval::Camera& camera) const {
     double white = 1;
     if (setup_.camera.normalisation == petzval::Normalisation::irradiance) white = irradiance_on_axis(camera);
     const petzval::BokehControls& bokeh = setup_.camera.bokeh;
+    std::string glasses;
+    for (const std::string& file : setup_.lens.glass_files) glasses += file_checksum(file);
     return {{"scene", renderer::checksum(scene_.description())},
             {"lens", lens_.name()},
             {"prescription", petzval::checksum(petzval::format_prescription(loaded_.prescription))},
@@ -368,7 +379,8 @@ class Job {
             {"integrator", options_.integrator},
             {"wavelengths", options_.wavelengths == "visible" ? "hero" : options_.wavelengths},
             {"normalisation", petzval::name(setup_.camera.normalisation)},
-            {"coatings", options_.coatings},
+            {"glasses", glasses},
+            {"coatings", coatings_used()},
             {"coating_file", options_.coatings.ends_with(".csv") ? file_checksum(options_.coatings) : ""},
             {"white", white},
             {"width", setup_.film.columns},

@@ -2,7 +2,9 @@
 // Reports with a set-up of a camera, and --setup, which takes it back.
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -109,6 +111,44 @@ TEST_F(Setup, CameraOfTheLibraryEqualsTheCameraOfTheReport) {
   }
 }
 
+TEST_F(Setup, ShardsOfFilesInOtherFoldersAreMergedAndResumed) {
+  std::filesystem::create_directory(folder / "other");
+  for (const char* file : {"map.exr", "coating.csv", "points.json"}) {
+    std::filesystem::copy_file(path(file), folder / "other" / file);
+  }
+  std::filesystem::copy_file(lens("double_gauss_52mm_f1.8"), folder / "other/copy.json");
+  const auto render = [&](const std::string& text) {
+    std::istringstream words(text + " --scene balls --integrator path");
+    return run("render", {std::istream_iterator<std::string>(words), {}});
+  };
+  const auto shard = [&](const std::string& lens_file, const std::string& from, const std::string& which) {
+    const Outcome outcome = render(
+        lens_file + " --iris-image " + from + "map.exr --coatings " + from + "coating.csv --points " + from +
+        "points.json --model thick --f-number 4 --blades 5 --iris-area equal --wavelengths F --focus 1m --size 40x24 "
+        "--spp 2 --shard " +
+        which + " --out " + path("shards"));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  };
+  shard("double_gauss_52mm_f1.8", path(""), "1/2");
+  shard(path("other/copy.json"), path("other/"), "2/2");
+  EXPECT_EQ(run("render", {"merge", path("shards"), "--out", path("merged")}).status, 0);
+  // The set-up has the values of the flags: it continues the first shard; another picture is refused.
+  const std::string again =
+      "--setup " + path("merged/render.json") + " --spp 4 --shard 1/2 --resume --out " + path("shards");
+  EXPECT_EQ(render(again).status, 0);
+  for (const char* change : {" --coatings mgf2", " --wavelengths d", " --f-number 5", " --dispersion 2"}) {
+    EXPECT_EQ(render(again + change).status, 1) << change;
+  }
+}
+
+TEST_F(Setup, CoatingOfASetupIsInTheJob) {
+  for (const char* coatings : {"none", "mgf2"}) {
+    report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--coatings", coatings}, coatings);
+    const json again = report("render", {"--setup", path(std::string(coatings) + ".json")}, "again");
+    EXPECT_EQ(again["job"]["coatings"], coatings);
+  }
+}
+
 TEST_F(Setup, FlagsChangeSingleValues) {
   const Arguments lens{"LENS", "--size", "24x16"};
   const auto with = [&](Arguments more) {
@@ -168,9 +208,8 @@ TEST_F(Setup, BlurredPictureIsMadeAgainToTheBit) {
 }
 
 TEST_F(Setup, SetupOfOneCommandIsTakenByOthers) {
-  const json rendered = report(
-      "render", {"LENS", "--size", "24x16", "--focus", "1500", "--f-number", "4", "--blades", "7", "--swing", "2"},
-      "rendered");
+  const json rendered =
+      report("render", {"LENS", "--size", "24x16", "--focus", "1500", "--f-number", "4", "--blades", "7"}, "rendered");
   const json blurred = report("blur", {"--setup", "@rendered.json"}, "blurred");
   const json point = report("psf", {"--setup", "@blurred.json"}, "point");
   const json again = report("render", {"--setup", "@point.json"}, "again");
