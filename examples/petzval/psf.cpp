@@ -56,7 +56,8 @@ struct Options {
 
   /// True for rays of the unmodified lens, false for rays of a camera.
   bool plain() const noexcept {
-    return setup.camera.model == petzval::ModelKind::exact_double && examples::plain_bokeh(setup);
+    return setup.camera.model == petzval::ModelKind::exact_double && setup.camera.expressive.empty() &&
+           examples::plain_bokeh(setup);
   }
 };
 
@@ -107,11 +108,32 @@ double common_half_width(std::span<const Subject> subjects, const Options& optio
   return half_width;
 }
 
+/// Removes from a set-up what PSFs do not use, with a note.
+void leave_out_unused(examples::CameraFlags& setup) {
+  std::string names;
+  const auto leave_out = [&names](bool found, const char* name) {
+    if (found) names += (names.empty() ? "" : ", ") + std::string(name);
+  };
+  petzval::Film& film = setup.film;
+  leave_out(film.tilted(), "tilt and swing of the film");
+  leave_out(film.shift_x_mm != 0 || film.shift_y_mm != 0, "shift of the film");
+  leave_out(film.z_mm || film.travel_mm != 0, "position of the film");
+  leave_out(setup.coating || setup.camera.transmission, "coatings");
+  leave_out(!setup.focal_points.empty(), "focal points");
+  film = {.width_mm = film.width_mm, .height_mm = film.height_mm, .columns = film.columns, .rows = film.rows};
+  setup.coating.reset(), setup.camera.transmission = false;
+  setup.focal_points.clear(), setup.focal_surface = {};
+  if (!names.empty()) examples::note(setup.file + ": not used by psf: " + names);
+}
+
 /// The focused lenses, before tracing. @throws petzval::Error if a focus is out of reach
 std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& options,
                              const petzval::BokehControls& controls) {
   const petzval::Lens lens = examples::stopped_down(loaded.lens, options.setup);
   std::vector<Picture> pictures;
+  petzval::CameraOptions camera = options.setup.camera;
+  camera.normalisation = petzval::Normalisation::irradiance, camera.bokeh = controls;
+  camera.bokeh.rate_of_change *= 36 / std::max(options.setup.film.width_mm, options.setup.film.height_mm);
   for (const double field : options.fields_deg) {
     const examples::BokehSetup setup{
         .light_mm = options.subject_mm, .focus = options.setup.focus, .field_rad = petzval::radians(field)};
@@ -119,7 +141,7 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
       Picture picture{field, focus, examples::focused_scene(lens, focus, setup), {}, {}, {}, {}};
       examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
       if (!options.plain()) {
-        picture.camera = examples::camera_of(picture.scene, {.model = options.setup.camera.model, .bokeh = controls});
+        picture.camera = examples::camera_of(picture.scene, camera);
       }
       pictures.push_back(std::move(picture));
     }
@@ -316,7 +338,7 @@ int commands::psf(int argc, char** argv) {
       app, "--wavelengths", options.wavelengths_nm,
       "wavelengths of the light; several, from 420 to 680 nm, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
-  examples::add_model(app, options.setup.camera.model);
+  const auto* const model = examples::add_model(app, options.setup.camera.model);
   examples::add_iris(app, options.setup);
   examples::add_bokeh(app, options.setup);
   examples::add_numbers(app, "--fields", options.fields_deg, examples::field_angle,
@@ -344,9 +366,17 @@ int commands::psf(int argc, char** argv) {
 
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
+    leave_out_unused(options.setup);
+    options.setup.film = options.setup.sized_film(0, 0, 600);
+    // Set-ups of pictures have the fast form of exact rays.
+    petzval::ModelKind& kind = options.setup.camera.model;
+    if (diffraction->given() && !model->given() && kind == petzval::ModelKind::exact_float) {
+      kind = petzval::ModelKind::exact_double;
+    }
     if (diffraction->given() && !options.plain()) {
       throw petzval::Error(
-          "--diffraction needs exact rays of the lens as it is; must be without --model and bokeh controls");
+          "--diffraction needs exact rays of the lens as it is; must be without --model and bokeh controls" +
+          (options.setup.file.empty() ? "" : "; with " + options.setup.file + " model = " + std::string(name(kind))));
     }
     petzval::LensSource& source = options.setup.lens;
     if (options.focus_mm.empty()) options.focus_mm = {*options.setup.focus_mm};
@@ -355,7 +385,13 @@ int commands::psf(int argc, char** argv) {
       std::ranges::sort(options.wavelengths_nm);
     }
     options.light = examples::white_light(options.white_point);
-    examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work
+    try {  // before the work
+      examples::rgb_weights(options.wavelengths_nm, options.light);
+    } catch (const petzval::Error& error) {
+      if (wavelengths->given() || options.setup.file.empty()) throw;
+      examples::note(options.setup.file + ": " + error.what() + "; psf uses the d line, or --wavelengths");
+      options.wavelengths_nm = {petzval::d_line_nm};
+    }
     const petzval::BokehControls controls = examples::controls_of(options.setup);
     std::vector<Subject> subjects;
     options.setup.focus_mm = options.focus_mm.front(), source.wavelengths_nm = options.wavelengths_nm;

@@ -149,6 +149,38 @@ TEST_F(Setup, CoatingOfASetupIsInTheJob) {
   }
 }
 
+TEST_F(Setup, PsfUsesASetupAndStatesWhatItUsed) {
+  const auto with = [](const Arguments& more) {
+    Arguments all{"LENS", "--focus", "1m", "--size", "24x16", "--model", "thick", "--film", "24x16"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  report("render", with({}), "plain");
+  report("render", with({"--power-spline", "0:1", "0.7:1.01", "1:0.98"}), "expressive");
+  report("render", with({"--tilt", "3", "--coatings", "mgf2", "--points", "@points.json"}), "more");
+  const json plain = report("psf", {"--setup", "@plain.json"}, "plain_psf");
+  const json expressive = report("psf", {"--setup", "@expressive.json"}, "expressive_psf");
+  const json more = report("psf", {"--setup", "@more.json"}, "more_psf");
+  EXPECT_EQ(plain["setup"]["film"], read_json(path("plain.json"))["setup"]["film"]);
+  EXPECT_EQ(expressive["setup"], read_json(path("expressive.json"))["setup"]);
+  EXPECT_NE(pictures("expressive_psf"), pictures("plain_psf"));
+  EXPECT_EQ(more["setup"], plain["setup"]);
+  EXPECT_EQ(pictures("more_psf"), pictures("plain_psf"));
+  EXPECT_NE(run("psf", {"--setup", path("more.json"), "--at", "2m", "--rays", "64", "--out", path("o")}).err, "");
+  // Rates refer to half of the longer side of the film; psf without a set-up has a film of 36 x 24 mm.
+  report("render", with({"--rate-of-change", "1"}), "cat");
+  report("psf", {"--setup", "@cat.json", "--fields", "5"}, "cat_psf");
+  report("psf", {"LENS", "--focus", "1m", "--model", "thick", "--rate-of-change", "1.5", "--fields", "5"}, "wide_psf");
+  EXPECT_EQ(pictures("cat_psf"), pictures("wide_psf"));
+}
+
+TEST_F(Setup, PsfTakesExactRaysAndWavelengthsOfAnyPicture) {
+  report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--f-number", "8", "--wavelengths", "hero"}, "hero");
+  const json waves = report("psf", {"--setup", "@hero.json", "--diffraction"}, "waves");
+  EXPECT_EQ(waves["model"], "exact_double");
+  EXPECT_EQ(waves["wavelengths_nm"].size(), 1);
+}
+
 TEST_F(Setup, FlagsChangeSingleValues) {
   const Arguments lens{"LENS", "--size", "24x16"};
   const auto with = [&](Arguments more) {
