@@ -66,6 +66,10 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help) {
+  app.add_check([&flags] {
+    petzval::LensSource& of_file = flags.setup.lens_of_file;
+    if (!flags.singlet.empty()) of_file = {.wavelengths_nm = of_file.wavelengths_nm};
+  });
   examples::add_setup(app, flags.setup);
   examples::add_thin_lens(app, flags.setup.lens.thin_mm);
   examples::add_lens(app, flags.setup.lens, "LENS", "traced by exact rays");
@@ -122,7 +126,6 @@ namespace {
 petzval::Lens lens_of(LensFlags& flags) {
   examples::CameraFlags& setup = flags.setup;
   petzval::LensSource& source = setup.lens;
-  if (!flags.singlet.empty() && !setup.file.empty()) source = {};
   const int kinds = flags.thin() + (!source.file.empty() || source.prescription) + !flags.singlet.empty();
   if (kinds != 1) {
     throw Error("lens: " + std::to_string(kinds) + " of --thin-lens, LENS and --singlet are given; must be 1");
@@ -164,7 +167,8 @@ LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double 
                 .coloured = flags.coloured(),
                 .controls = controls_of(setup),
                 .expressive = setup.camera.expressive,
-                .first_order_only = !setup.file.empty() && setup.camera.model.is_first_order()};
+                .first_order_only = !setup.file.empty() && setup.camera.model.is_first_order(),
+                .paraxial_focus = setup.camera.paraxial_focus};
   petzval::Film& film = view.film;
   if (film_height_mm > 0) film.height_mm = film_height_mm;
   if (film_height_mm == 0 && angle_rad > 0) film.height_mm = petzval::film_height_for_angle(lens, angle_rad);
@@ -228,7 +232,8 @@ petzval::CameraSetup BlurLens::setup() const {
   result.camera = {.model = model(),
                    .normalisation = petzval::Normalisation::unity_on_axis,
                    .bokeh = view_.controls,
-                   .expressive = view_.expressive};
+                   .expressive = view_.expressive,
+                   .paraxial_focus = view_.thin() || view_.paraxial_focus};
   return result;
 }
 

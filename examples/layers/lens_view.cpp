@@ -24,7 +24,7 @@ petzval::Camera LensView::camera() const {
                           .bokeh = controls,
                           .focal_surface = surface,
                           .expressive = expressive,
-                          .paraxial_focus = thin()});
+                          .paraxial_focus = thin() || paraxial_focus});
 }
 
 std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const petzval::LayerCamera& layers) const {

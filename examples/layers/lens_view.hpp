@@ -36,6 +36,7 @@ struct LensView {
   std::optional<petzval::FocalSurface> surface = {};
   petzval::ExpressiveLens expressive = {};
   bool first_order_only = false;  ///< a preview of a real lens
+  bool paraxial_focus = false;    ///< as CameraOptions; always of a thin lens
   /// Returns the camera of this lens, film and options; empty: camera() makes the camera.
   std::function<const petzval::Camera&()> made = {};
 
