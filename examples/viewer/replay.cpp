@@ -74,9 +74,7 @@ void replay(const ReplayOptions& options) {
     name.insert(0, 4 - std::min<std::size_t>(name.size(), 4), '0');
     const std::filesystem::path stem = std::filesystem::path(options.out_folder) / ("event_" + name);
     if (still && !options.out_folder.empty()) {
-      const std::string setup_file = stem.string() + "_setup.json";
-      examples::write_text(setup_file, petzval::to_json(session.editor().state().setup) + '\n');
-      state["command"] = session.blur_command(setup_file);
+      state["command"] = session.blur_command(stem.string() + "_setup.json");
     }
     if (!error.empty()) state["error"] = error;
     if (options.json) {

@@ -368,6 +368,9 @@ std::string Session::blur_command(const std::string& setup_file) const {
   if (input.near_mm > 0) add("near", exact(input.near_mm)), add("far", exact(input.far_mm));
   if (options_.layers != 4) add("layers", std::to_string(options_.layers));
   if (options_.fov_deg > 0) add("fov", exact(options_.fov_deg));
+  petzval::CameraSetup setup = editor_->state().setup;
+  setup.focus_mm = editor_->state().focus_mm;
+  examples::write_text(setup_file, petzval::to_json(setup) + '\n');
   add("setup", as_file(setup_file));
   return command + " --out out";
 }

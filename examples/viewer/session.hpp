@@ -97,7 +97,8 @@ class Session {
   examples::Json state_json(const Frame& frame) const;
   /// The scene, the lens and all events: the file of --replay.
   examples::Json log() const;
-  /// The command line that makes the still picture. setup_file: a file with the set-up of the state.
+  /// The command line that makes the still picture. Writes the set-up of the state to a file, with the distance in
+  /// focus also of a lens that cannot focus at it.
   std::string blur_command(const std::string& setup_file) const;
 
  private:

@@ -216,9 +216,7 @@ void Worker::export_files(const std::filesystem::path& folder) {
     const Frame still = session_.still();
     examples::write_picture(still.picture, petzval::to_srgb8(still.picture), {"exr", "png"}, folder / "view");
     examples::write_text(folder / "view.json", session_.log().dump(1) + '\n');
-    const std::string setup_file = (folder / "setup.json").string();
-    examples::write_text(setup_file, petzval::to_json(session_.editor().state().setup) + '\n');
-    examples::write_text(folder / "blur.sh", session_.blur_command(setup_file) + '\n');
+    examples::write_text(folder / "blur.sh", session_.blur_command((folder / "setup.json").string()) + '\n');
     next.message = "written to " + std::filesystem::absolute(folder).lexically_normal().string() +
                    ": view.png, view.exr, view.json (events), setup.json (camera), blur.sh (command line)";
   } catch (const petzval::Error& error) {
