@@ -387,7 +387,7 @@ int commands::blur(int argc, char** argv) {
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] {
     const petzval::Film& film = options.lens.setup.film;
-    if (!options.lens.setup.file.empty() && !options.input.scene.empty() && options.input.width == 0) {
+    if (options.lens.setup.pixels_given && !options.input.scene.empty() && options.input.width == 0) {
       options.input.width = static_cast<std::uint32_t>(film.columns);
       options.input.height = static_cast<std::uint32_t>(film.rows);
     }

@@ -7,6 +7,7 @@
 
 #include "cli.hpp"
 #include "files.hpp"
+#include "json_input.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -20,7 +21,7 @@ namespace examples {
 petzval::Film CameraFlags::sized_film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
   constexpr double max_side_px = 16384;
   petzval::Film result = film;
-  if (!file.empty() && columns == 0 && rows == 0) return result;
+  if (pixels_given && columns == 0 && rows == 0) return result;
   double across = columns, down = rows;
   double &width = result.width_mm, &height = result.height_mm;
   if (!film_given && across > 0 && down > 0) {
@@ -43,9 +44,15 @@ void add_setup(App& app, CameraFlags& flags) {
   app.add_option(
          "--setup",
          [&app, &flags](const std::string& file) {
+           const petzval::CameraOptions usual = flags.camera;
            static_cast<petzval::CameraSetup&>(flags) =
                for_flag("--setup", [&] { return petzval::camera_setup(read_text(file, largest_json), file); });
-           flags.file = file, flags.film_given = true;
+           const Json json = read_json(file), &setup = json.contains("setup") ? json["setup"] : json;
+           const auto has = [&](const char* key) { return setup.contains(Json::json_pointer(key)); };
+           if (!has("/camera/model")) flags.camera.model = usual.model;
+           if (!has("/camera/normalisation")) flags.camera.normalisation = usual.normalisation;
+           flags.file = file, flags.film_given = has("/film");
+           flags.pixels_given = has("/film/columns") && has("/film/rows");
            // Kept for command lines without another lens.
            flags.lens_of_file = std::exchange(flags.lens, {.wavelengths_nm = flags.lens.wavelengths_nm});
            for (const char* replaced : {"LENS", "--focus"}) app.get_option(replaced)->required(false);
@@ -56,9 +63,21 @@ void add_setup(App& app, CameraFlags& flags) {
       ->type_name("REPORT.json");
   app.add_check([&app, &flags] {
     if (flags.file.empty()) return;
-    if (!app.get_option("LENS")->given() && flags.lens.thin_mm == 0) flags.lens = flags.lens_of_file;
+    const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + flags.file + ": " + why); };
+    if (app.get_option("--focus")->given())
+      flags.film.z_mm.reset(), flags.focal_surface.default_inverse_distance.reset();
+    if (flags.iris_area == "equal" && !app.get_option("--f-number")->given()) {
+      fail("--iris-area = equal needs --f-number: the f-number of a set-up is of the corners");
+    }
+    if (!app.get_option("LENS")->given() && flags.lens.thin_mm == 0) {
+      flags.lens = flags.lens_of_file;
+      const std::string& lens = flags.lens.file;
+      if (!lens.empty() && !petzval::find_lens(lens)) {
+        fail("lens: file = \"" + lens + "\"; must be an existing file or the name of a shipped lens");
+      }
+    }
     if (flags.focus_mm || flags.pull.moves()) return;
-    throw petzval::Error("--setup = " + flags.file + ": focus_mm is missing; must be in the file or given by --focus");
+    fail("focus_mm is missing; must be in the file or given by --focus");
   });
 }
 
@@ -82,6 +101,7 @@ void add_film(App& app, CameraFlags& flags, const std::string& help) {
            const auto [width, height] = parse_size("--film", text, film_side);
            flags.film.width_mm = width, flags.film.height_mm = height;
            flags.film_given = true;
+           if (flags.pixels_given) flags.film.rows = std::max(1, int(std::round(flags.film.columns * height / width)));
          },
          help)
       ->type_name("WxH")
@@ -190,6 +210,9 @@ petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags) 
     if (iris.roundness != 0) refuse("--roundness", "no edges");
     if (iris.rotation_rad != 0) refuse("--iris-rotation", "no corners");
     if (flags.iris_area == "equal") refuse("--iris-area = equal", "only one area");
+  }
+  if (flags.iris_area == "equal" && flags.lens.thin_mm > 0) {
+    throw petzval::Error("--iris-area = equal with --thin-lens; must be circumscribed");
   }
   const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, iris); });
   if (flags.f_number && flags.lens.thin_mm == 0) return stopped_to(shaped, corner_f_number(flags));

@@ -24,6 +24,7 @@ struct CameraFlags : petzval::CameraSetup {
   std::string iris_area = "circumscribed";  ///< meaning of f_number: "equal": of a round iris of the same area
   std::string points_file = {};             ///< points of the focal surface, used instead of focal_points
   bool film_given = false;                  ///< the film has the size of --film or --setup
+  bool pixels_given = false;                ///< the film has the pixels of --setup
   std::string file = {};                    ///< of --setup
   petzval::LensSource lens_of_file = {};    ///< the lens of --setup
 

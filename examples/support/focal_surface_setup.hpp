@@ -14,7 +14,7 @@
 
 namespace examples {
 
-/// Adds --kind and --beta, which need the option of the points.
+/// Adds --kind and --beta, which need the option of the points or --setup.
 void add_surface_kind(App& app, petzval::FocalSurfaceOptions& options, Option* points);
 
 /// Maps a point of the world to the lens frame, mm.

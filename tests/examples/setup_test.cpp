@@ -221,7 +221,44 @@ TEST_F(Setup, RefusesFaultsWithFileKeyAndValue) {
   const Arguments line{"--scene", "balls", "--setup", path("unfocused.json"), "--spp", "1", "--out", path("out")};
   expect_failure("render", line, {"--setup", "unfocused.json", "focus_mm", "--focus"});
   expect_failure("render", {"--scene", "balls", "--setup", path("none.json"), "--out", path("out")}, {"none.json"});
+  json stopped = setup;
+  stopped["f_number"] = 4;
+  write("stopped.json", stopped.dump());
+  const auto given = [&](Arguments more, const std::vector<petzval::testing::Token>& tokens) {
+    more.insert(more.end(), {"--scene", "balls", "--setup", path("stopped.json"), "--spp", "1", "--out", path("out")});
+    expect_failure("render", more, tokens);
+  };
+  given({"--blades", "5", "--iris-area", "equal"}, {"--iris-area", "equal", "--f-number"});
   EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+TEST_F(Setup, FlagsReplaceValuesThatFollowFromThem) {
+  json setup =
+      report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--model", "thick", "--points", "@points.json"},
+             "first")["setup"];
+  setup["film"]["z_mm"] = 90;
+  setup["focal_points"][0]["weight"] = 0.5;
+  write("at.json", setup.dump());
+  const json far = report("render", {"--setup", "@at.json", "--focus", "inf", "--kind", "shepard"}, "far")["setup"];
+  EXPECT_EQ(far["focal_surface"]["kind"], "shepard");
+  EXPECT_NE(far["film"].value("z_mm", json()), 90);
+  EXPECT_NE(far["focal_surface"].value("default_inverse_distance", json()),
+            setup["focal_surface"]["default_inverse_distance"]);
+  const json wide = report("render", {"--setup", "@first.json", "--film", "36x18"}, "wide")["setup"]["film"];
+  EXPECT_EQ(wide["rows"], 4);
+}
+
+TEST_F(Setup, MissingPartsHaveTheValuesOfTheCommand) {
+  json setup = report("render", {"LENS", "--focus", "1m", "--size", "8x8"}, "first")["setup"];
+  setup.erase("film"), setup.erase("camera");
+  write("short.json", setup.dump());
+  const json again = report("render", {"--setup", "@short.json", "--size", "8x4"}, "again")["setup"];
+  const json usual = report("render", {"LENS", "--focus", "1m", "--size", "8x4"}, "usual")["setup"];
+  EXPECT_EQ(again["camera"], usual["camera"]);
+  EXPECT_EQ(again["film"], usual["film"]);
+  setup["lens"]["file"] = "gone.json";
+  write("gone.json.setup", setup.dump());
+  report("render", {"--setup", "@gone.json.setup", "LENS", "--size", "8x8"}, "replaced");
 }
 
 #ifdef PETZVAL_TEST_HAS_blur
@@ -237,6 +274,30 @@ TEST_F(Setup, BlurredPictureIsMadeAgainToTheBit) {
                      {"LENS", "--size", "24x16", "--focus", "3m", "--fov", "20", "--swing", "2"},
                      {"LENS", "--size", "24x16", "--focus", "3m", "--points", "@points.json", "--kind", "shepard"},
                      {"--singlet", "50,-50,5,N-BK7", "--size", "24x16", "--focus", "3m"}});
+}
+
+TEST_F(Setup, ThinLensOfBlurIsSharpInItsParaxialFocus) {
+  report("blur", {"--thin-lens", "50", "--f-number", "2", "--size", "24x16", "--focus", "1m"}, "thin");
+  const petzval::Camera camera = petzval::camera(petzval::camera_setup(read(path("thin.json")), "thin.json"));
+  // Two rays of the middle of the film cross at the distance in focus.
+  const auto ray = [&](double x) { return camera.sample({.film = {0, 0}, .pupil_u = x, .pupil_v = 0.5}).ray; };
+  const auto one = ray(0.1), other = ray(0.9);
+  const auto x_at = [](const auto& r, double z) {
+    return r.origin.x + (z - r.origin.z) * r.direction.x / r.direction.z;
+  };
+  const double shift = x_at(one, -1000) - x_at(other, -1000), wide = x_at(one, 0) - x_at(other, 0);
+  EXPECT_GT(std::abs(wide), 1);
+  EXPECT_NEAR(shift / wide, 0, 1e-6);
+  expect_failure("blur",
+                 {"--thin-lens", "50", "--f-number", "2", "--blades", "5", "--iris-area", "equal", "--scene", "town",
+                  "--focus", "1m", "--out", path("out")},
+                 {"--iris-area", "--thin-lens"});
+  for (const Arguments& lens : std::vector<Arguments>{{"LENS"}, {"--thin-lens", "50"}}) {
+    Arguments both{"--setup", path("thin.json"), "--singlet", "50,-50,5,N-BK7", "--scene",
+                   "town",    "--out",           path("out")};
+    both.insert(both.end(), lens.begin(), lens.end());
+    expect_failure("blur", expanded(both), {"--singlet", "LENS"});
+  }
 }
 
 TEST_F(Setup, SetupOfOneCommandIsTakenByOthers) {
