@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "petzval/core/error.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
@@ -47,6 +48,9 @@ Lens compile(const CameraSetup& setup, const GlassCatalogue* glasses) {
   std::optional<GlassCatalogue> own;
   if (!glasses && !(source.glasses.empty() && source.glass_files.empty())) glasses = &own.emplace(glasses_of(source));
   const bool thin = source.thin_mm > 0;
+  if (!thin && !source.prescription && !find_lens(source.file)) {
+    throw Error("lens: file = \"" + source.file + "\"; must be an existing file or the name of a shipped lens");
+  }
   Prescription lens = thin ? thin_elements(source.thin_mm, setup.f_number.value_or(0)) : read_lens(source, glasses);
   lens = configured(lens, configuration_of(source, lens).value_or(ConfigurationChoice()));
   if (source.match_glasses) lens = match_glasses(lens, glasses ? *glasses : glass_tables()).prescription;

@@ -147,10 +147,6 @@ CameraSetup read_setup(const JsonPart& part) {
     part.fail_at("lens", "lens: " + std::to_string(given) + " of file, prescription and thin_mm are given; must be 1");
   }
   if (lens.thin_mm > 0 && !setup.f_number) part.fail_at("lens.thin_mm", "f_number is missing; must be given");
-  if (!lens.file.empty() && !find_lens(lens.file)) {
-    part.fail_at("lens.file",
-                 "lens: file = " + in_quotes(lens.file) + "; must be an existing file or the name of a shipped lens");
-  }
   return setup;
 }
 
