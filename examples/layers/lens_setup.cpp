@@ -142,7 +142,8 @@ petzval::Lens lens_of(LensFlags& flags) {
   }
   const petzval::Lens compiled = examples::load_lens(setup, source.wavelengths_nm).lens;
   petzval::Lens lens = examples::stopped_down(compiled, setup);
-  setup.f_number = setup.used_with(compiled).f_number;
+  const petzval::CameraSetup used = setup.used_with(compiled);
+  setup.f_number = used.f_number, source.primary_nm = used.lens.primary_nm;
   return lens;
 }
 
@@ -187,7 +188,7 @@ LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double 
 
 /// Vertical angle of the flags; 0: as the film of --setup, or a film 24 mm high, covers it.
 double angle_of(const LensFlags& flags) {
-  const bool usual = flags.thin() && flags.setup.file.empty();
+  const bool usual = flags.thin() && !flags.setup.film_given;
   return petzval::radians(flags.fov_deg > 0 ? flags.fov_deg : usual ? 30 : 0);
 }
 

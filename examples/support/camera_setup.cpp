@@ -64,12 +64,14 @@ void add_setup(App& app, CameraFlags& flags) {
   app.add_check([&app, &flags] {
     if (flags.file.empty()) return;
     const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + flags.file + ": " + why); };
-    if (app.get_option("--focus")->given())
+    const bool own_lens = !app.get_option("LENS")->given() && flags.lens.thin_mm == 0;
+    if (!own_lens || app.get_option("--focus")->given()) {
       flags.film.z_mm.reset(), flags.focal_surface.default_inverse_distance.reset();
+    }
     if (flags.iris_area == "equal" && !app.get_option("--f-number")->given()) {
       fail("--iris-area = equal needs --f-number: the f-number of a set-up is of the corners");
     }
-    if (!app.get_option("LENS")->given() && flags.lens.thin_mm == 0) {
+    if (own_lens) {
       flags.lens = flags.lens_of_file;
       const std::string& lens = flags.lens.file;
       if (!lens.empty() && !petzval::find_lens(lens)) {
@@ -101,7 +103,8 @@ void add_film(App& app, CameraFlags& flags, const std::string& help) {
            const auto [width, height] = parse_size("--film", text, film_side);
            flags.film.width_mm = width, flags.film.height_mm = height;
            flags.film_given = true;
-           if (flags.pixels_given) flags.film.rows = std::max(1, int(std::round(flags.film.columns * height / width)));
+           const double rows = std::round(flags.film.columns * height / width);
+           if (flags.pixels_given) flags.film.rows = static_cast<int>(std::clamp(rows, 1.0, 16384.0));
          },
          help)
       ->type_name("WxH")
@@ -191,6 +194,7 @@ double corner_f_number(const CameraFlags& flags) {
 
 petzval::CameraSetup CameraFlags::used_with(const petzval::Lens& compiled) const {
   petzval::CameraSetup result = *this;
+  result.lens.primary_nm = primary_among(compiled.wavelengths_nm(), lens.primary_nm);
   if (f_number && lens.thin_mm == 0) {
     result.f_number = reachable(petzval::with_iris(compiled, iris), corner_f_number(*this));
   }

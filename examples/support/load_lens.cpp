@@ -162,15 +162,21 @@ LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::
   return {std::move(file), std::move(lens)};
 }
 
+std::optional<double> primary_among(std::span<const double> wavelengths_nm, std::optional<double> primary_nm) {
+  const bool used = primary_nm && std::ranges::find(wavelengths_nm, *primary_nm) != wavelengths_nm.end();
+  return used ? primary_nm : std::nullopt;
+}
+
 LoadedLens load_lens(const petzval::LensSource& input, std::span<const double> wavelengths_nm) {
   return compiled(examples::read_lens(input), wavelengths_nm, input.primary_nm);
 }
 
 LoadedLens load_lens(const petzval::CameraSetup& setup, std::span<const double> wavelengths_nm) {
-  if (!(setup.lens.thin_mm > 0)) return load_lens(setup.lens, wavelengths_nm);
+  const std::optional<double> primary_nm = primary_among(wavelengths_nm, setup.lens.primary_nm);
+  if (!(setup.lens.thin_mm > 0)) return compiled(examples::read_lens(setup.lens), wavelengths_nm, primary_nm);
   LensFile file{"thin_lens", petzval::thin_elements(setup.lens.thin_mm, *setup.f_number),
                 examples::glasses_of(setup.lens)};
-  petzval::Lens lens = compiled_for(file, wavelengths_nm, setup.lens.primary_nm);
+  petzval::Lens lens = compiled_for(file, wavelengths_nm, primary_nm);
   return {std::move(file), std::move(lens)};
 }
 

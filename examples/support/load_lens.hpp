@@ -60,6 +60,9 @@ LensFile read_lens(const petzval::LensSource& input);
 /// used); a note reports this if a wavelength other than the reference is used.
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm = {});
 
+/// The primary wavelength of a set-up; none if a command uses wavelengths without it.
+std::optional<double> primary_among(std::span<const double> wavelengths_nm, std::optional<double> primary_nm);
+
 /// Reads and compiles a lens file.
 LoadedLens load_lens(const petzval::LensSource& input, std::span<const double> wavelengths_nm);
 /// The same for the lens of a set-up, also a thin lens.

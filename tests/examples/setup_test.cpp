@@ -237,11 +237,12 @@ TEST_F(Setup, FlagsReplaceValuesThatFollowFromThem) {
       report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--model", "thick", "--points", "@points.json"},
              "first")["setup"];
   setup["film"]["z_mm"] = 90;
-  setup["focal_points"][0]["weight"] = 0.5;
+  setup["lens"]["primary_nm"] = 600;
   write("at.json", setup.dump());
   const json far = report("render", {"--setup", "@at.json", "--focus", "inf", "--kind", "shepard"}, "far")["setup"];
   EXPECT_EQ(far["focal_surface"]["kind"], "shepard");
   EXPECT_NE(far["film"].value("z_mm", json()), 90);
+  EXPECT_NE(far["lens"].value("primary_nm", json()), 600);
   EXPECT_NE(far["focal_surface"].value("default_inverse_distance", json()),
             setup["focal_surface"]["default_inverse_distance"]);
   const json wide = report("render", {"--setup", "@first.json", "--film", "36x18"}, "wide")["setup"]["film"];
