@@ -61,7 +61,7 @@ PETZVAL_API std::string to_json(const CameraSetup& setup);
 ///
 /// @param where  name of the source, for messages
 /// @throws Error with source, line, column, key, value and rule: for unknown keys and values out of range, unless
-///               "format" and one lens are given, if there is no such lens file, if parse_prescription() throws
+///               "format" and one lens are given, if parse_prescription() throws
 PETZVAL_API CameraSetup camera_setup(std::string_view json, const std::string& where);
 
 /// The file of a lens: `name` itself, or the file of the shipped lens of this name; nullopt if neither exists.
