@@ -104,7 +104,6 @@ TEST_F(ViewProgram, StillPictureIsThatOfBlur) {
        {{{"type", "serve"}, {"by", "surface"}},
         patch(R"({"focal_surface": {"beta": 4}, "lens": {"wavelengths_nm": [587.5618, 650, 510, 475]}})")}},
       {"double_gauss_52mm_f1.8", {patch(R"({"f_number": 2.8})"), {{"type", "serve"}, {"by", "tilt"}}}},
-      {"eye_gullstrand_le_grand", json::array()},  // does not focus at a distance
       {"double_gauss_52mm_f1.8",
        {{{"type", "expressive"}, {"from_lens", 2}},
         patch(R"({"camera": {"expressive": {"dispersion": [3]}}})"),
