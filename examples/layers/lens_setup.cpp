@@ -116,7 +116,7 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
              "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys. A "
              "real lens is replaced by its thick lens")
           ->type_name("POINTS.json");
-  add_surface_kind(app, flags.setup.focal_surface, points);
+  add_surface_kind(app, flags.setup, points);
   add_expressive(app, flags.expressive);
 }
 

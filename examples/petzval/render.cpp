@@ -551,7 +551,7 @@ int commands::render(int argc, char** argv) {
                                 "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
                                 "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
                      ->type_name("POINTS.json");
-  examples::add_surface_kind(app, options.setup.focal_surface, points);
+  examples::add_surface_kind(app, options.setup, points);
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_angle(app, "--tilt", options.setup.film.tilt_rad, below_quarter_turn,

@@ -238,7 +238,7 @@ int commands::surface(int argc, char** argv) {
           ->type_name("POINTS.json");
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
-  examples::add_surface_kind(app, options.setup.focal_surface, points);
+  examples::add_surface_kind(app, options.setup, points);
   app.add_option("--table", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);

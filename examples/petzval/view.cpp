@@ -21,10 +21,8 @@
 
 namespace {
 
-/// The set-up of a file. The editor measures the distance in focus from the front vertex.
-petzval::CameraSetup read_setup(const std::string& file) {
-  petzval::CameraSetup setup =
-      examples::for_flag("--setup", [&] { return petzval::camera_setup(examples::read_text(file), file); });
+/// Measures the distance in focus from the front vertex, as the editor does.
+void focus_from_front(petzval::CameraSetup& setup) {
   auto& wavelengths = setup.lens.wavelengths_nm;
   if (wavelengths.empty()) wavelengths = {petzval::d_line_nm};
   if (setup.focus_mm && std::isfinite(*setup.focus_mm)) {
@@ -32,7 +30,6 @@ petzval::CameraSetup read_setup(const std::string& file) {
     *setup.focus_mm -= petzval::origin_z(lens, setup.focus.origin);
   }
   setup.focus = {};
-  return setup;
 }
 
 }  // namespace
@@ -111,7 +108,10 @@ int commands::view(int argc, char** argv) {
     }
     if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";
     petzval::CameraSetup& setup = window.session.setup;
-    if (!setup_file.empty()) setup = read_setup(setup_file);
+    if (!setup_file.empty()) {
+      setup = examples::for_flag("--setup",
+                                 [&] { return petzval::camera_setup(examples::read_text(setup_file), setup_file); });
+    }
     if (thin->given()) {
       if (!lens.file.empty()) throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
       if (!(f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
@@ -124,6 +124,7 @@ int commands::view(int argc, char** argv) {
         window.first_events = {{{"type", "setup"}, {"setup", {{"f_number", f_number}}}}};
       }
     }
+    if (!setup_file.empty()) focus_from_front(setup);
     if (window.log_file.empty()) window.log_file = "petzval-view.json";
     viewer::show_window(window);
   });

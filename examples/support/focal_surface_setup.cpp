@@ -82,15 +82,16 @@ std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& 
 
 }  // namespace
 
-void add_surface_kind(App& app, petzval::FocalSurfaceOptions& options, Option* points) {
+void add_surface_kind(App& app, petzval::CameraSetup& setup, Option* points) {
+  petzval::FocalSurfaceOptions& options = setup.focal_surface;
   add_choice(app, "--kind", options.kind, kinds,
              "interpolation of distances between points: affine (by planes, which are reproduced) or shepard "
              "(weighted means, flat at the points)",
              names(kinds));
   add_number(app, "--beta", options.beta, {1, 8, "a number from 1 to 8"},
              "exponent of the weights: a point's weight is its distance in the picture to the power -beta");
-  app.add_check([&app, points] {
-    if (points->given() || app.get_option("--setup")->given()) return;
+  app.add_check([&app, &setup, points] {
+    if (points->given() || !setup.focal_points.empty()) return;
     for (const char* flag : {"--kind", "--beta"}) {
       if (app.get_option(flag)->given()) throw petzval::Error(std::string(flag) + " needs --points");
     }

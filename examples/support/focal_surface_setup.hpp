@@ -15,7 +15,7 @@
 namespace examples {
 
 /// Adds --kind and --beta, which need the option of the points or --setup.
-void add_surface_kind(App& app, petzval::FocalSurfaceOptions& options, Option* points);
+void add_surface_kind(App& app, petzval::CameraSetup& setup, Option* points);
 
 /// Maps a point of the world to the lens frame, mm.
 using WorldToLens = std::function<petzval::Vec3<double>(const petzval::Vec3<double>&)>;
