@@ -16,7 +16,7 @@ namespace {
 
 using namespace petzval;
 using Vec = Vec3<double>;
-constexpr std::uint32_t columns = 256, rows = 170, samples = 64;
+constexpr std::uint32_t columns = 480, rows = 320, samples = 64;
 constexpr double floor_y = -120, tile = 100;  // mm, lens frame: the scene lies at negative z
 
 struct Sphere {

@@ -182,8 +182,8 @@ TEST_F(Teaching, TiltFit_TableSeenFromAbove_TiltsTheFilmTowardsTheTable) {
 
 TEST_F(Teaching, PathTracer_SphereInFocus_HasTheSharpestEdge) {
   const petzval::RgbImage image = picture("path_tracer.png", output("path_tracer", {path("")}));
-  ASSERT_EQ(image.width, 256);
-  ASSERT_EQ(image.height, 170);
+  ASSERT_EQ(image.width, 480);
+  ASSERT_EQ(image.height, 320);
   // Red light in front of the sky at the top of a sphere, as a mean over five columns.
   const auto largest_step = [&](int column, int from, int to) {
     float result = 0;
@@ -194,13 +194,13 @@ TEST_F(Teaching, PathTracer_SphereInFocus_HasTheSharpestEdge) {
     }
     return result;
   };
-  const float sharp = largest_step(133, 38, 52), blurred = largest_step(212, 28, 48);
+  const float sharp = largest_step(249, 71, 98), blurred = largest_step(398, 52, 90);
   EXPECT_GT(sharp, 0.1f);
   EXPECT_GT(sharp, 2 * blurred);
 
   // The picture is upright: blue sky above, and it is darker in the corner than in the middle of the upper edge.
   const float* const corner = image.pixel(0, 0);
-  const float* const middle = image.pixel(128, 0);
+  const float* const middle = image.pixel(240, 0);
   EXPECT_GT(middle[2], 1.1f * middle[0]);
   EXPECT_LT(corner[2], middle[2]);
 }
