@@ -208,7 +208,8 @@ void refuse_other_job(const fs::path& file, const Json& found, const Json& expec
   std::string differences;
   std::set<std::string> seen;
   for (const Json* const values : {&own, &other}) {
-    for (const auto& [key, value] : values->items()) {
+    for (const auto& entry : values->items()) {
+      const std::string key = entry.key();
       if (at(own, key) == at(other, key) || !seen.insert(key).second) continue;
       if (std::ranges::any_of(left_out, [&](const char* start) { return key.starts_with(start); })) continue;
       differences +=

@@ -50,7 +50,7 @@ class Work {
 
 /// Times by tests/bench/camera_bench on an AMD EPYC (AVX2), divided by the time of a thin lens.
 constexpr double two_discs = 2.5, polynomial = 2.6, polynomial_term = 0.006;
-constexpr double exact = 2.4, sphere = 0.28, quadric = 0.8, asphere = 1.8, in_double = 2.2;
+constexpr double exact_rays = 2.4, sphere = 0.28, quadric = 0.8, asphere = 1.8, double_by_float = 2.2;
 
 }  // namespace
 
@@ -60,12 +60,12 @@ double cost(ModelKind model, const Lens& lens) {
     const int n = (model.degree() - 1) / 2, terms = 4 * (n + 1) * (n + 2) * (n + 3) / 6;
     return polynomial + polynomial_term * terms * (camera_detail::has_cylinders(lens) ? n + 2 : 1);
   }
-  double sum = exact;
+  double sum = exact_rays;
   for (const LensSurface& s : lens.surfaces()) {
     const bool quadratic = s.curvature != 0 && (s.conic != 0 || s.curved_in != Section::both);
     sum += !s.aspheric.empty() ? asphere : quadratic ? quadric : sphere;
   }
-  return model == ModelKind::exact_double ? in_double * sum : sum;
+  return model == ModelKind::exact_double ? double_by_float * sum : sum;
 }
 
 std::vector<double> time_rays(std::span<const std::shared_ptr<const RayModel>> models, const Film& film) {
