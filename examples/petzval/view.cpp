@@ -21,7 +21,7 @@
 
 namespace {
 
-/// Measures the distance in focus from the front vertex, as the editor does.
+/// Measures the distance in focus from the front vertex, the origin of the editor.
 void focus_from_front(petzval::CameraSetup& setup) {
   auto& wavelengths = setup.lens.wavelengths_nm;
   if (wavelengths.empty()) wavelengths = {petzval::d_line_nm};

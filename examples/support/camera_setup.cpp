@@ -7,7 +7,6 @@
 
 #include "cli.hpp"
 #include "files.hpp"
-#include "json_input.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -45,9 +44,10 @@ void add_setup(App& app, CameraFlags& flags) {
          "--setup",
          [&app, &flags](const std::string& file) {
            const petzval::CameraOptions usual = flags.camera;
+           const std::string text = read_text(file, largest_json);
            static_cast<petzval::CameraSetup&>(flags) =
-               for_flag("--setup", [&] { return petzval::camera_setup(read_text(file, largest_json), file); });
-           const Json json = read_json(file), &setup = json.contains("setup") ? json["setup"] : json;
+               for_flag("--setup", [&] { return petzval::camera_setup(text, file); });
+           const Json json = Json::parse(text), &setup = json.contains("setup") ? json["setup"] : json;
            const auto has = [&](const char* key) { return setup.contains(Json::json_pointer(key)); };
            if (!has("/camera/model")) flags.camera.model = usual.model;
            if (!has("/camera/normalisation")) flags.camera.normalisation = usual.normalisation;
@@ -58,8 +58,7 @@ void add_setup(App& app, CameraFlags& flags) {
            for (const char* replaced : {"LENS", "--focus"}) app.get_option(replaced)->required(false);
          },
          "set-up of the camera instead of LENS and flags; a report of render, blur or psf, or a file with its setup. "
-         "LENS "
-         "and the flags that are given replace single values")
+         "LENS and the flags that are given replace single values")
       ->type_name("REPORT.json");
   app.add_check([&app, &flags] {
     if (flags.file.empty()) return;

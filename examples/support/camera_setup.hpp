@@ -18,7 +18,7 @@ namespace examples {
 /// Width or height of a film, mm.
 inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a length above 0, at most 1e6 mm"};
 
-/// The set-up of a camera as the flags of a command line state it.
+/// The set-up of a camera by the flags of a command line.
 struct CameraFlags : petzval::CameraSetup {
   FocusPull pull = {};                      ///< a focus that moves; focus_mm is then its first distance
   std::string iris_area = "circumscribed";  ///< meaning of f_number: "equal": of a round iris of the same area

@@ -29,7 +29,7 @@ Section section_of(const petzval::Lens& lens, const petzval::Film& film) {
   }
   constexpr int steps = 24;
   std::vector<Vec2<float>> rims;
-  double apart = 0;  // of thin elements, whose surfaces would overlap
+  double apart = 0;  // the surfaces of thin elements would overlap
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const double rim = std::min(surfaces[i].semi_diameter, widest);
     const bool stop = lens.stop() == i;
