@@ -43,7 +43,7 @@ LensReport::Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t ray
   constexpr std::size_t steps = 10;
   constexpr std::array frequencies{10.0, 20.0, 40.0};
   const std::size_t wavelengths = r.lens.wavelengths_nm().size();
-  if (r.largest_field.field_rad == 0) return {};
+  if (r.largest_field.field_rad == 0) return grid<MtfPoint>({}, frequencies.size());
   std::vector<Spot> spots((steps + 1) * wavelengths);
   parallel_for(spots.size(), 1, r.conditions.threads, [&](std::size_t at, std::size_t) {
     const double field = r.largest_field.field_rad * static_cast<double>(at / wavelengths) / steps;
@@ -56,7 +56,7 @@ LensReport::Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t ray
 LensReport::Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
   const auto& weights = r.conditions.wavelength_weights;
   const auto step = through_focus_step(r.lens, r.spots->values, weights);
-  if (!step) return {};
+  if (!step) return grid<ThroughFocusSpot>({}, 1);
   const std::array shifts{-2 * *step, -*step, 0.0, *step, 2 * *step};
   return grid(through_focus(r.spots->values, r.spots->columns, shifts, weights), shifts.size());
 }

@@ -103,7 +103,7 @@ struct Writer {
   template <class T, class Add>
   void operator()(const char* key, const LensReport::Quantity<std::vector<T>>& values, const Add& add_entry) {
     LensReport::Quantity<LensReport::Grid<T>> grid{{}, values.failure};
-    if (values) grid.value = {*values};
+    if (values) grid.value = {*values, 1};
     (*this)(key, grid, add_entry);
   }
 };

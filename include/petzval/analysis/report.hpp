@@ -48,7 +48,7 @@ struct LensReport {
   template <class T>
   struct Grid {
     std::vector<T> values;  ///< row by row
-    std::size_t columns = 1;
+    std::size_t columns;    ///< at least 1
 
     std::size_t size() const noexcept { return values.size() / columns; }  ///< number of rows
     std::span<const T> operator[](std::size_t row) const noexcept {
