@@ -17,7 +17,6 @@
 #include "layer_data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "pixel_steps.hpp"
 #include "ray_table.hpp"
 
 namespace petzval {
@@ -33,21 +32,6 @@ int floor_of(double x) { return static_cast<int>(std::floor(x)); }
 struct Tile {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
-
-/// Adds the steps of a ray that all pixels share, within a range of depths.
-/// @param all the range of all layers
-void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
-               std::ptrdiff_t row_stride, std::vector<Step>& steps) {
-  const PixelSteps<double> of_ray(rows[at_x * stride + i], rows[at_y * stride + i], rows[slope_x * stride + i],
-                                  rows[slope_y * stride + i], range.most, range.least, all.least,
-                                  std::max(all.most, 1e-30f));
-  const auto low = [&](double n) { return static_cast<float>(std::max(of_ray.low(n), 0.0)); };
-  for (double n = 0; n <= of_ray.last(); ++n) {
-    const auto pixel = of_ray.pixel(n);
-    steps.push_back({static_cast<std::ptrdiff_t>(pixel.row) * row_stride + static_cast<std::ptrdiff_t>(pixel.column),
-                     low(n), low(n - 1)});
-  }
-}
 
 /// One call of gather().
 class Gathering {
@@ -90,31 +74,26 @@ class Gathering {
   using Memory = BlurredImage::Memory::OfThread;
 
   void follow(const Tile& tile, Memory& memory) {
-    for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
-      // The other paths overwrite the sums.
-      if (method_.path == GatherPath::general) memory.sums[channel] = {};
-      follow(tile, channel, memory);
-    }
+    for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) follow(tile, channel, memory);
     compose(tile, memory);
   }
 
   void follow(const Tile& tile, std::size_t channel, Memory& memory) {
     const std::size_t stride = rays_.table.rays;
     const float* corners[4];
-    if (method_.path == GatherPath::shift_invariant) {
-      corners[0] = rays_.table.node(channel, 0, 0);
-    } else {
-      for (int c = 0; c < 4; ++c) {
-        std::vector<float>& corner = memory.corners[c];
-        corner.resize(rays_.table.node_size() + 64);
-        rays_.table.at(channel, tile.left + (c % 2) * tile.columns, tile.top + (c / 2) * tile.rows, corner.data());
-        corners[c] = corner.data();
-      }
+    for (int c = 0; c < 4; ++c) {
+      std::vector<float>& corner = memory.corners[c];
+      corner.resize(rays_.table.node_size() + 64);
+      corners[c] = rays_.shift_invariant ? rays_.table.node(channel, 0, 0) : corner.data();
+      if (rays_.shift_invariant) continue;
+      rays_.table.at(channel, tile.left + (c % 2) * tile.columns, tile.top + (c / 2) * tile.rows, corner.data());
     }
     const GatherLoops& loops = gather_loops();
-    const std::size_t corner_count = method_.path == GatherPath::shift_invariant ? 1 : 4;
+    const auto reach_of = [&](float least, float most) {
+      return loops.limits(corners, rays_.shift_invariant ? 1 : 4, stride, stride, least, most);
+    };
     const auto rect_of = [&](const DepthRange& range) {
-      const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
+      const Limits reach = reach_of(range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
       // One more pixel on each side, because positions are rounded.
       return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
@@ -133,57 +112,46 @@ class Gathering {
 
     // A ray without a hit is followed to the farthest of all depths, to detect if it ends in the void.
     const PixelRect all_read = rect_of({farthest_, range.empty() ? farthest_ : range.most, 1});
-    TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
-                .columns = tile.columns,
-                .rows = tile.rows,
-                .left = tile.left,
-                .top = tile.top,
-                .colours = rays_.table.channels == 1 ? 3 : 1,
-                .opaque = layers_.opaque,
-                .gap = rays_.gap(),
-                .sums = &memory.sums[channel]};
+    const TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
+                      .columns = tile.columns,
+                      .rows = tile.rows,
+                      .left = tile.left,
+                      .top = tile.top,
+                      .colours = rays_.table.channels == 1 ? 3 : 1,
+                      .opaque = layers_.opaque,
+                      .gap = rays_.gap(),
+                      .sums = &memory.sums[channel]};
     if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
-    std::uint64_t made = 0;
-    if (method_.path == GatherPath::shift_invariant) {
-      memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);
-      for (std::size_t i = 0; i < stride; ++i) {
-        add_steps(corners[0], stride, i, range, all_, job.window.stride, memory.steps);
-        memory.first.push_back(static_cast<std::uint32_t>(memory.steps.size()));
-        const auto at_end = [&](Row at, Row slope) {
-          return floor_of(corners[0][at * stride + i] + farthest_ * corners[0][slope * stride + i] + 0.5f);
-        };
-        memory.ends.push_back(at_end(at_y, slope_y) * job.window.stride + at_end(at_x, slope_x));
-      }
-      const LayerWindow all = job.window;
-      const int side = job.side = rays_.side();
-      for (int row = 0; row < std::min(side, tile.rows); ++row) {
-        for (int column = 0; column < std::min(side, tile.columns); ++column) {
-          const std::size_t count = rays_.rays_of_set(),
-                            begin = set_of(tile.left + column, tile.top + row, side) * count;
-          job.window = all.from(row, column);
-          job.columns = (tile.columns - column + side - 1) / side, job.rows = (tile.rows - row + side - 1) / side;
-          job.first_sum = TileSums::index(row, column, side);
-          made += loops.same(job, {.count = count,
-                                   .steps = memory.steps.data(),
-                                   .first = memory.first.data() + begin,
-                                   .weights = corners[0] + weight * stride + begin,
-                                   .ends = memory.ends.data() + begin});
-        }
-      }
-    } else {
-      memory.scratch.resize(2 * rays_.table.node_size());
-      const DifferentRays rays{.count = rays_.rays_of_set(),
-                               .row_stride = stride,
-                               .corners = {corners[0], corners[1], corners[2], corners[3]},
-                               .scratch = memory.scratch.data(),
-                               .from = range.most,
-                               .to = range.least,
-                               .most = std::max(all_.most, 1e-30f),
-                               .end = farthest_,
-                               .side = rays_.side()};
-      made = method_.path == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
-    }
-    steps_ += made;
+    const Limits reach = reach_of(range.least, range.most);
+    constexpr std::size_t margin = 4;  // steps begin before and end after the range
+    TileRays rays{
+        .count = rays_.rays_of_set(),
+        .row_stride = stride,
+        .corners = {corners[0], corners[1], corners[2], corners[3]},
+        .from = range.most,
+        .to = range.least,
+        .most = std::max(all_.most, 1e-30f),
+        .end = farthest_,
+        .side = rays_.side(),
+        .most_steps = margin + static_cast<std::size_t>(std::max(reach.right - reach.left, reach.bottom - reach.top))};
+    if (memory.scratch.size() < rays.scratch_size()) memory.scratch.resize(rays.scratch_size());
+    rays.scratch = memory.scratch.data();
+    if (method_.by_blocks) set_tolerances(rays);
+    steps_ += loops.follow(job, rays);
+  }
+
+  /// In focus, lines may differ by less than the rounding to pixels; in a blur, also by a small part of its radius.
+  static void set_tolerances(TileRays& rays) {
+    constexpr float in_focus_px = 0.15f, of_radius = 0.03f;
+    const auto radius = [&](float w) {
+      const Limits at = gather_loops().limits(rays.corners, 1, rays.row_stride, rays.row_stride, w, w);
+      return 0.25f * (at.right - at.left + at.bottom - at.top);
+    };
+    const float from = radius(rays.from), to = radius(rays.to),
+                sharpest = rays.from + (rays.to - rays.from) * from / std::max(from + to, 1e-30f);
+    rays.tolerances[0] = {rays.from, in_focus_px + of_radius * from};
+    rays.tolerances[1] = {sharpest, in_focus_px + of_radius * radius(sharpest)};
+    rays.tolerances[2] = {rays.to, in_focus_px + of_radius * to};
   }
 
   /// The layers at a tile whose rays stay within a rectangle.
@@ -237,36 +205,29 @@ class Gathering {
     return w;
   }
 
-  /// The `side` of TileSums::index().
-  int sums_side() const noexcept { return method_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
-
   void compose(const Tile& tile, const Memory& memory) {
-    const int side = sums_side();
     const std::size_t channels = rays_.table.channels;
     const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
     double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
-      for (int first = 0; first < std::min(side, tile.columns); ++first) {
-        int at = TileSums::index(row, first, side);
-        const int end = at + (tile.columns - first + side - 1) / side;
-        // In most rows all rays meet surfaces.
-        bool all_met = layers_.opaque;
-        for (std::size_t c = 0; c < channels && all_met; ++c) {
-          const TileSums& sums = memory.sums[c];
-          for (int i = at; i < end; ++i) all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
-        }
-        const auto colour = [&](std::size_t c) {
-          return channels == 1 ? memory.sums[0].colour[c] : memory.sums[c].colour[0];
-        };
-        const float *const red = colour(0), *const green = colour(1), *const blue = colour(2);
-        int column = tile.left + first;
-        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile.top + row) * picture_.columns + column;
-        float *rgba = picture_.rgba.data() + 4 * pixel, *unseen = picture_.missed.data() + pixel;
-        for (; at < end; ++at, column += side, rgba += 4 * side, unseen += side) {
-          rgba[0] = red[at] * per_ray, rgba[1] = green[at] * per_ray, rgba[2] = blue[at] * per_ray, rgba[3] = 1;
-          *unseen = all_met ? 0 : compose(memory, at, column, tile.top + row, rgba);
-          missed += static_cast<double>(*unseen);
-        }
+      int at = row * TileSums::columns;
+      const int end = at + tile.columns;
+      // In most rows all rays meet surfaces.
+      bool all_met = layers_.opaque;
+      for (std::size_t c = 0; c < channels && all_met; ++c) {
+        const TileSums& sums = memory.sums[c];
+        for (int i = at; i < end; ++i) all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
+      }
+      const auto colour = [&](std::size_t c) {
+        return channels == 1 ? memory.sums[0].colour[c] : memory.sums[c].colour[0];
+      };
+      const float *const red = colour(0), *const green = colour(1), *const blue = colour(2);
+      const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile.top + row) * picture_.columns + tile.left;
+      float *rgba = picture_.rgba.data() + 4 * pixel, *unseen = picture_.missed.data() + pixel;
+      for (int column = tile.left; at < end; ++at, ++column, rgba += 4, ++unseen) {
+        rgba[0] = red[at] * per_ray, rgba[1] = green[at] * per_ray, rgba[2] = blue[at] * per_ray, rgba[3] = 1;
+        *unseen = all_met ? 0 : compose(memory, at, column, tile.top + row, rgba);
+        missed += static_cast<double>(*unseen);
       }
     }
     // Counted for each channel.
@@ -315,16 +276,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-std::string_view blur_detail::name(GatherPath path) noexcept {
-  switch (path) {
-    case GatherPath::automatic: return "automatic";
-    case GatherPath::shift_invariant: return "shift_invariant";
-    case GatherPath::coherent: return "coherent";
-    case GatherPath::general: return "general";
-  }
-  return "unknown";
-}
-
 void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
                          const GatherMethod& method, BlurredImage& picture) {
   const auto wrong = [](const std::string& what) { return Error("gather: " + what); };
@@ -338,19 +289,6 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
   if (!(options.highlights_above >= 0)) {
     throw wrong("highlights_above = " + to_text(options.highlights_above) + "; must be at least 0 (0: off)");
   }
-  GatherPath path = method.path;
-  if (path == GatherPath::automatic) {
-    path = rays.shift_invariant()  ? GatherPath::shift_invariant
-           : rays.set_count() == 1 ? GatherPath::coherent
-                                   : GatherPath::general;
-  }
-  if (path == GatherPath::shift_invariant && !rays.shift_invariant()) {
-    throw wrong("the rays differ between pixels; the path must not be shift_invariant");
-  }
-  if (path == GatherPath::coherent && rays.set_count() != 1) {
-    throw wrong("number of ray sets = " + std::to_string(rays.set_count()) + "; must be 1 for the path coherent");
-  }
-
   const DepthRange depths = LayerAccess::data(layers).depths();
   const double reach = depths.empty() ? 0 : rays.reach_px(depths.least, depths.most);
   if (!(reach <= most_reach_px)) {
@@ -370,7 +308,7 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
     const double finding = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Gathering(layers, rays, options, {path, method.limit_steps}, beyond / 2, highlights, picture).run();
+    Gathering(layers, rays, options, method, beyond / 2, highlights, picture).run();
     picture.statistics.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
     highlights.spread(options, picture);

@@ -29,11 +29,6 @@ struct WholePixel<Numbers> {
 };
 
 using core_detail::load;
-PETZVAL_INLINE float sum_of(Numbers numbers) noexcept {
-  float sum = 0;
-  for (int i = 0; i < width; ++i) sum += numbers.v[i];
-  return sum;
-}
 PETZVAL_INLINE Numbers only(Mask mask, Numbers numbers) noexcept { return select(mask, numbers, Numbers(0.0f)); }
 
 PETZVAL_INLINE Mask first_lanes(std::size_t count) noexcept {
@@ -42,27 +37,30 @@ PETZVAL_INLINE Mask first_lanes(std::size_t count) noexcept {
   return lane < Numbers(static_cast<float>(count));
 }
 
-/// Loads every side-th number.
+PETZVAL_INLINE int smaller_of(int a, int b) noexcept { return a < b ? a : b; }
+
+/// Loads every side-th number of `side` rows.
 template <int side, int... lanes>
-PETZVAL_INLINE Numbers load_every(const float* from, std::integer_sequence<int, lanes...> all) noexcept {
+PETZVAL_INLINE Numbers load_rows(const float* from, const std::ptrdiff_t* rows,
+                                 std::integer_sequence<int, lanes...> all) noexcept {
   if constexpr (side == 1) {
-    return load(from);
+    return load(from + *rows);
   } else {
-    const Numbers a = load_every<side / 2>(from, all), b = load_every<side / 2>(from + side / 2 * width, all);
+    const Numbers a = load_rows<side / 2>(from, rows, all), b = load_rows<side / 2>(from, rows + side / 2, all);
     return Numbers(__builtin_shufflevector(a.v, b.v, (2 * lanes)...));
   }
 }
 
-/// Loads pixels `side` columns apart, one per lane.
+/// Loads the pixels of a Register, all at the same offset.
 template <int side>
-struct Apart {
+struct Together {
+  const std::ptrdiff_t* rows;
   std::ptrdiff_t offset;
 
   PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
-    return load_every<side>(plane + offset, std::make_integer_sequence<int, width>{});
+    return load_rows<side>(plane + offset, rows, std::make_integer_sequence<int, width>{});
   }
 };
-using AdjacentPixels = Apart<1>;
 
 /// Loads a pixel for each active lane, and 0 for the other lanes, whose rays have ended.
 struct Anywhere {
@@ -226,110 +224,6 @@ PETZVAL_INLINE void give_up(Numbers weight, GatherState<opaque, colours>& found)
   found.missed = found.missed + rest, found.unknown = found.unknown + rest;
 }
 
-/// Stores the results of adjacent pixels.
-template <bool opaque, int colours>
-PETZVAL_INLINE void keep(TileSums& sums, int pixel, const GatherState<opaque, colours>& found,
-                         Numbers weight) noexcept {
-  for (int c = 0; c < colours; ++c) store(sums.colour[c] + pixel, found.colour[c]);
-  store(sums.total + pixel, weight);
-  if constexpr (!opaque) store(sums.alpha + pixel, found.alpha);
-  store(sums.open + pixel, found.open);
-  store(sums.missed + pixel, found.missed);
-  store(sums.unknown + pixel, found.unknown);
-}
-
-/// Follows one ray of pixels `side` columns apart, starting at the step `from`.
-template <int side, bool opaque, int colours>
-PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
-                                        std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
-                                        GatherState<opaque, colours>& found) noexcept {
-  found.begin_ray(lanes);
-  // In the previous step, all pixels passed in front of the first layer.
-  if (from != begin) found.front = in_front(Apart<side>{from[-1].offset}(window.depth));
-  std::uint64_t made = 0;
-  for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
-    meet(window, Apart<side>{step->offset}, Apart<side>{step[step == begin ? 0 : -1].offset}, Numbers(step->low),
-         Numbers(step->high), gap, weight, found.seeking, found);
-  }
-  if (!any(found.seeking)) return made;
-  end_partly(found);
-  end_in_void(window, Apart<side>{last}, weight, found.seeking, found);
-  for (const Step* step = end; step-- != begin && any(found.seeking);) {
-    guess(window, Apart<side>{step->offset}, Numbers(step->low), weight, found.seeking, found);
-  }
-  give_up(weight, found);
-  return made;
-}
-
-/// Follows the rays of `at_once` rows of pixels `side` columns apart. In most cases all pixels meet the first layer in
-/// the same step and need no masks.
-template <int side, bool opaque, int colours, int at_once>
-std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int column) noexcept {
-  LayerWindow windows[at_once];
-  for (int r = 0; r < at_once; ++r) windows[r] = job.window.from((row + r) * side, column * side);
-  const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
-  const bool full = opaque && every(lanes);
-  GatherState<opaque, colours> found[at_once];
-  Numbers total(0.0f);
-  const Numbers gap(job.gap);
-  std::uint64_t made = 0;
-  for (std::size_t i = 0; i < rays.count; ++i) {
-    const Step *const begin = rays.steps + rays.first[i], *const end = rays.steps + rays.first[i + 1], *step = begin;
-    const Numbers weight(rays.weights[i]);
-    total = total + weight;
-    bool met = false;
-    for (; full && step != end; ++step) {
-      const Numbers low(step->low), high(step->high);
-      Mask all = lanes, reached = first_lanes(0);
-      for (int r = 0; r < at_once; ++r) {
-        const Numbers w = Apart<side>{step->offset}(windows[r].depth);
-        const Mask here = w >= low;
-        reached = reached | here, all = all_of(all, here, w <= high);
-      }
-      if (every(all)) {
-        for (int r = 0; r < at_once; ++r) {
-          const Colours<colours> colour(windows[r], Apart<side>{step->offset}, 0);
-          for (int c = 0; c < colours; ++c) found[r].colour[c] = found[r].colour[c] + weight * colour.of[c];
-        }
-        met = true;
-        break;
-      }
-      if (any(reached)) break;
-    }
-    made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(step - begin + met);
-    if (met) continue;
-    for (int r = 0; r < at_once; ++r)
-      made += follow_ray<side>(windows[r], begin, step, end, rays.ends[i], gap, weight, lanes, found[r]);
-  }
-  for (int r = 0; r < at_once; ++r) {
-    keep(*job.sums, job.first_sum + (row + r) * TileSums::columns + column, found[r], total);
-  }
-  return made;
-}
-
-template <int side, bool opaque, int colours>
-std::uint64_t follow_sets(const TileJob& job, const SameRays& rays) noexcept {
-  constexpr int at_once = width == 16 ? 4 : 2;
-  std::uint64_t made = 0;
-  for (int column = 0; column < job.columns; column += width) {
-    int row = 0;
-    for (; row + at_once <= job.rows; row += at_once) {
-      made += follow_rows<side, opaque, colours, at_once>(job, rays, row, column);
-    }
-    for (; row < job.rows; ++row) made += follow_rows<side, opaque, colours, 1>(job, rays, row, column);
-  }
-  return made * static_cast<std::uint64_t>(width);
-}
-
-template <bool opaque, int colours>
-std::uint64_t follow_same(const TileJob& job, const SameRays& rays) noexcept {
-  switch (job.side) {
-    case 1: return follow_sets<1, opaque, colours>(job, rays);
-    case 2: return follow_sets<2, opaque, colours>(job, rays);
-    default: return follow_sets<4, opaque, colours>(job, rays);
-  }
-}
-
 Limits limits(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count, float w,
               float v) noexcept {
   const auto smaller = [](Numbers a, Numbers b) { return select(a < b, a, b); };
@@ -380,7 +274,7 @@ PETZVAL_INLINE PixelIndices pixels_at(const Numbers (&line)[row_count], Numbers 
 ///   of offsets
 /// @return the number of steps of the longest ray
 template <bool opaque, int colours, class Load>
-PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
+PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const TileRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,
                                     GatherState<opaque, colours>& found) noexcept {
   const PixelSteps<Numbers> steps(line[at_x], line[at_y], line[slope_x], line[slope_y], Numbers(rays.from),
@@ -426,102 +320,355 @@ PETZVAL_INLINE Mask lanes_of(PixelIndices numbers, std::int32_t number) noexcept
 #endif
 }
 
-/// Pixels of adjacent lanes. In most cases all lanes have equal offsets from their own pixels, and one load suffices.
-template <class Visit>
-PETZVAL_INLINE void load_adjacent(PixelIndices offsets, PixelIndices before, Mask lanes, const Visit& visit) noexcept {
-  const std::int32_t first = offsets[0], first_before = before[0];
-  const Mask equal_offsets = all_of(lanes_of(offsets, first), lanes_of(before, first_before));
-  if (!any(without(lanes, equal_offsets))) return visit(AdjacentPixels{first}, AdjacentPixels{first_before}, lanes);
-  PixelIndices own;
-  for (int i = 0; i < width; ++i) own[i] = i;
-  visit(Anywhere{offsets + own, lanes}, Anywhere{before + own, lanes}, lanes);
+/// The lines of a tile's rays at a position in the tile, in fractions of the tile: bilinear between the corners.
+class Lines {
+ public:
+  explicit Lines(const TileRays& rays) noexcept : padded_(rays.padded()), numbers_(rays.scratch) {
+    const auto lanes = static_cast<std::size_t>(width);
+    for (std::size_t r = 0; r < row_count; ++r) {
+      for (std::size_t i = 0; i < rays.row_stride; i += lanes) {
+        const auto corner = [&](int c) { return load(rays.corners[c] + r * rays.row_stride + i); };
+        const Numbers across = corner(1) - corner(0), down = corner(2) - corner(0);
+        store(numbers_ + (0 * row_count + r) * padded_ + i, corner(0));
+        store(numbers_ + (1 * row_count + r) * padded_ + i, across);
+        store(numbers_ + (2 * row_count + r) * padded_ + i, down);
+        store(numbers_ + (3 * row_count + r) * padded_ + i, corner(3) - corner(2) - across);
+      }
+    }
+  }
+
+  /// A row of the lines of adjacent rays at one position.
+  PETZVAL_INLINE Numbers of_rays(std::size_t row, std::size_t ray, Numbers across, Numbers down) const noexcept {
+    return sum([&](int c) { return load(at(c, row, ray)); }, across, down);
+  }
+  /// A row of the lines of one ray at the positions of the lanes.
+  PETZVAL_INLINE Numbers of_ray(std::size_t row, std::size_t ray, Numbers across, Numbers down) const noexcept {
+    return sum([&](int c) { return Numbers(*at(c, row, ray)); }, across, down);
+  }
+  /// The largest change of lines of adjacent rays, at an inverse depth, over half of an area of the tile, px.
+  PETZVAL_INLINE Numbers change(std::size_t ray, Numbers w, Numbers half_across, Numbers half_down) const noexcept {
+    const auto along = [&](Row position, Row slope) {
+      const auto by = [&](int c) { return size_of(load(at(c, position, ray)) + w * load(at(c, slope, ray))); };
+      const Numbers by_both = by(3);
+      return half_across * (by(1) + by_both) + half_down * (by(2) + by_both);
+    };
+    return larger(along(at_x, slope_x), along(at_y, slope_y));
+  }
+
+ private:
+  template <class Coefficient>
+  static PETZVAL_INLINE Numbers sum(const Coefficient& coefficient, Numbers across, Numbers down) noexcept {
+    return coefficient(0) + across * coefficient(1) + down * (coefficient(2) + across * coefficient(3));
+  }
+  PETZVAL_INLINE const float* at(int coefficient, std::size_t row, std::size_t ray) const noexcept {
+    return numbers_ + (static_cast<std::size_t>(coefficient) * row_count + row) * padded_ + ray;
+  }
+
+  std::size_t padded_;
+  float* numbers_;
+};
+
+/// The steps of the line at the middle of a block. In step n, from 0, the ray passes the pixel at offset(n) from its
+/// own pixel, in the range of inverse depths from low(n) >= 0 to low(n - 1).
+struct Steps {
+  static constexpr int numbers_of_step = 3;
+  const float* numbers;  ///< of each step, from -1: `width` offsets, lows and sure lows of adjacent rays
+  int count;
+  bool sure;  ///< the line serves all pixels of the block
+
+  PETZVAL_INLINE std::ptrdiff_t offset(int n) const noexcept {
+    std::int32_t result;
+    __builtin_memcpy(&result, at(n, 0), sizeof result);
+    return result;
+  }
+  PETZVAL_INLINE float low(int n) const noexcept { return *at(n, 1); }
+  /// Surfaces from sure_low(n) to sure_high(n) are met in step n by the lines of all pixels, those below sure_high(n +
+  /// 1) in a later step.
+  PETZVAL_INLINE float sure_low(int n) const noexcept { return *at(n, 2); }
+  PETZVAL_INLINE float sure_high(int n) const noexcept { return *at(n - 1, 1); }
+
+ private:
+  PETZVAL_INLINE const float* at(int n, int number) const noexcept {
+    return numbers + ((n + 1) * numbers_of_step + number) * width;
+  }
+};
+
+/// The steps of all rays of a set in a block.
+class BlockSteps {
+ public:
+  explicit BlockSteps(const TileRays& rays) noexcept
+      : groups_(rays.scratch + (4 * row_count + 1) * rays.padded()),
+        excess_(rays.scratch + 4 * row_count * rays.padded()),
+        capacity_(TileRays::numbers_of_ray(rays.most_steps)) {}
+
+  /// @param first the first ray of the set
+  /// @param across, down the middle of the block
+  PETZVAL_INLINE void make(const TileJob& job, const TileRays& rays, const Lines& lines, std::size_t first,
+                           float across, float down) noexcept {
+    const auto lanes = static_cast<std::size_t>(width);
+    const std::ptrdiff_t stride = job.window.stride;
+    for (std::size_t i = 0; i < rays.count; i += lanes) {
+      Numbers line[row_count];
+      const Mask used = first_lanes(rays.count - i);
+      for (std::size_t r = 0; r < row_count; ++r)
+        line[r] = only(used, lines.of_rays(r, first + i, Numbers(across), Numbers(down)));
+      const PixelSteps<Numbers> steps(line[at_x], line[at_y], line[slope_x], line[slope_y], Numbers(rays.from),
+                                      Numbers(rays.to), Numbers(rays.end), Numbers(rays.most));
+      float* to = groups_ + i * capacity_;
+      const auto put = [&](const auto& numbers) {
+        __builtin_memcpy(to, &numbers, sizeof numbers);
+        to += width;
+      };
+      put(__builtin_convertvector(steps.last().v, PixelIndices) + 1);
+      put(pixels_at(line, Numbers(rays.end), stride));
+      const Numbers excess = load(excess_ + first + i), unsure = excess * steps.length();
+      const Numbers one(1.0f), none(0.0f);
+      const auto put_lows = [&](Numbers low, Mask sure) {
+        put(larger(low - unsure, none)), put(select(sure, larger(low + unsure, none), Numbers(1e30f)));
+      };
+      put(Numbers(0.0f)), put_lows(steps.low(-one), used);
+      for (Numbers n(0.0f); any(n <= steps.last()); n = n + one) {
+        const auto pixel = steps.pixel(n);
+        put(offsets_of(pixel.column, pixel.row, stride));
+        const Numbers margin = larger(excess, -one);
+        put_lows(steps.low(n), all_of(pixel.beyond >= margin, pixel.beyond <= one - margin));
+      }
+    }
+  }
+
+  PETZVAL_INLINE Steps of(std::size_t ray, std::size_t first) const noexcept {
+    return {group(ray) + 2 * width, number(group(ray)), !(excess_[first + ray] > 0)};
+  }
+  /// Offset of the pixel at the depth of the farthest surface.
+  PETZVAL_INLINE std::ptrdiff_t end(std::size_t ray) const noexcept { return number(group(ray) + width); }
+
+ private:
+  PETZVAL_INLINE const float* group(std::size_t ray) const noexcept {
+    const std::size_t lane = ray % static_cast<std::size_t>(width);
+    return groups_ + (ray - lane) * capacity_ + lane;
+  }
+  static PETZVAL_INLINE std::int32_t number(const float* from) noexcept {
+    std::int32_t result;
+    __builtin_memcpy(&result, from, sizeof result);
+    return result;
+  }
+
+  float *groups_, *excess_;
+  std::size_t capacity_;  ///< numbers for each ray
+};
+
+/// Pixels of one set in the lanes of a register: `side` rows of width / side pixels, each `side` pixels apart.
+template <int side>
+struct Register {
+  static constexpr int in_row = width / side;
+
+  LayerWindow window;         ///< at the first pixel
+  std::ptrdiff_t rows[side];  ///< offsets of the rows; of the last one for rows below the tile
+  PixelIndices own;           ///< offsets of all pixels
+  Numbers across, down;       ///< positions in the tile
+  Mask lanes;                 ///< pixels in the tile
+  int first;                  ///< index in TileSums
+
+  Register() = default;
+  PETZVAL_INLINE Register(const TileJob& job, int row, int column) noexcept
+      : window(job.window.from(row, column)), first(row * TileSums::columns + column) {
+    for (int r = 0; r < side; ++r) {
+      rows[r] = row + r * side < job.rows ? r * side * window.stride : r == 0 ? 0 : rows[r - 1];
+    }
+    Numbers x, y;
+    for (int l = 0; l < width; ++l) {
+      x.v[l] = static_cast<float>(column + l % in_row * side) + 0.5f;
+      y.v[l] = static_cast<float>(row + l / in_row * side) + 0.5f;
+      own[l] = static_cast<std::int32_t>(rows[l / in_row]) + l % in_row * side;
+    }
+    const Numbers columns(static_cast<float>(job.columns)), all_rows(static_cast<float>(job.rows));
+    lanes = all_of(x < columns, y < all_rows);
+    across = x / columns, down = y / all_rows;
+  }
+
+  PETZVAL_INLINE Together<side> at(std::ptrdiff_t offset) const noexcept { return {rows, offset}; }
+
+  /// Stores the results.
+  template <bool opaque, int colours>
+  PETZVAL_INLINE void keep(TileSums& sums, const GatherState<opaque, colours>& found, Numbers total) const noexcept {
+    const auto put = [&](float* plane, Numbers numbers) {
+      if constexpr (side == 1) {
+        store(plane + first, numbers);
+      } else {
+        for (int l = 0; l < width; ++l)
+          plane[first + l / in_row * side * TileSums::columns + l % in_row * side] = numbers.v[l];
+      }
+    };
+    for (int c = 0; c < colours; ++c) put(sums.colour[c], found.colour[c]);
+    put(sums.total, total);
+    if constexpr (!opaque) put(sums.alpha, found.alpha);
+    put(sums.open, found.open), put(sums.missed, found.missed), put(sums.unknown, found.unknown);
+  }
+};
+
+/// Follows one line of all pixels of a register, starting at the step `from`.
+template <int side, bool opaque, int colours>
+PETZVAL_INLINE std::uint64_t follow_steps(const Register<side>& pixels, const Steps& steps, int from,
+                                          std::ptrdiff_t last, Numbers gap, Numbers weight,
+                                          GatherState<opaque, colours>& found) noexcept {
+  const LayerWindow& window = pixels.window;
+  found.begin_ray(pixels.lanes);
+  // In the previous step, all pixels passed in front of the first layer.
+  if (from > 0) found.front = in_front(pixels.at(steps.offset(from - 1))(window.depth));
+  std::uint64_t made = 0;
+  for (int n = from; n < steps.count && any(found.seeking); ++n, ++made) {
+    meet(window, pixels.at(steps.offset(n)), pixels.at(steps.offset(n > 0 ? n - 1 : 0)), Numbers(steps.low(n)),
+         Numbers(steps.low(n - 1)), gap, weight, found.seeking, found);
+  }
+  if (!any(found.seeking)) return made;
+  end_partly(found);
+  end_in_void(window, pixels.at(last), weight, found.seeking, found);
+  for (int n = steps.count; n-- > 0 && any(found.seeking);) {
+    guess(window, pixels.at(steps.offset(n)), Numbers(steps.low(n)), weight, found.seeking, found);
+  }
+  give_up(weight, found);
+  return made;
 }
 
-template <bool opaque, int colours>
-std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noexcept {
+/// Follows a ray for which each pixel of a register has a line of its own.
+template <int side, bool opaque, int colours>
+PETZVAL_INLINE std::uint64_t follow_lines(const Register<side>& pixels, const TileRays& rays, float gap,
+                                          const Lines& lines, std::size_t ray,
+                                          GatherState<opaque, colours>& found) noexcept {
+  Numbers line[row_count];
+  for (std::size_t r = 0; r < row_count; ++r) line[r] = lines.of_ray(r, ray, pixels.across, pixels.down);
+  found.begin_ray(pixels.lanes);
+  // In most cases all pixels have equal offsets.
+  const auto load_pixels = [&](PixelIndices offsets, PixelIndices before, Mask here, const auto& visit) {
+    const std::int32_t first = offsets[0], first_before = before[0];
+    const Mask equal_offsets = all_of(lanes_of(offsets, first), lanes_of(before, first_before));
+    if (!any(without(here, equal_offsets))) return visit(pixels.at(first), pixels.at(first_before), here);
+    visit(Anywhere{offsets + pixels.own, here}, Anywhere{before + pixels.own, here}, here);
+  };
+  return follow(pixels.window, rays, gap, line, load_pixels, found);
+}
+
+/// Follows the rays of some registers of a block. In most cases all pixels meet the first layer in the same step and
+/// need no masks. Otherwise, pixels follow their own lines unless the line of the block serves all of them.
+template <int side, bool opaque, int colours, int at_once>
+std::uint64_t follow_registers(const TileJob& job, const TileRays& rays, const Lines& lines, const BlockSteps& block,
+                               std::size_t first_ray, const Register<side>* registers) noexcept {
+  bool full = opaque;
+  for (int r = 0; r < at_once; ++r) full &= every(registers[r].lanes);
+  GatherState<opaque, colours> found[at_once];
+  Numbers total[at_once];
+  for (Numbers& t : total) t = Numbers(0.0f);
+  const Numbers gap(job.gap);
   std::uint64_t made = 0;
-  Numbers lane;
-  for (int i = 0; i < width; ++i) lane.v[i] = static_cast<float>(i) + 0.5f;
-  const std::size_t numbers = row_count * rays.row_stride;
-  float *const left = rays.scratch, *const rise = rays.scratch + numbers;  // values of a row, and change per column
-  for (int row = 0; row < job.rows; ++row) {
-    const float down = (static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows);
-    const float per_column = 1 / static_cast<float>(job.columns);
-    for (std::size_t i = 0; i < numbers; ++i) {
-      left[i] = rays.corners[0][i] + down * (rays.corners[2][i] - rays.corners[0][i]);
-      rise[i] = (rays.corners[1][i] + down * (rays.corners[3][i] - rays.corners[1][i]) - left[i]) * per_column;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const std::size_t ray = first_ray + i;
+    Numbers weights[at_once];
+    for (int r = 0; r < at_once; ++r) {
+      weights[r] = lines.of_ray(weight, ray, registers[r].across, registers[r].down);
+      total[r] = total[r] + weights[r];
     }
-    for (int column = 0; column < job.columns; column += width) {
-      const Numbers lane_column = lane + Numbers(static_cast<float>(column));
-      const LayerWindow window = job.window.from(row, column);
-      const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
-      GatherState<opaque, colours> found;
-      Numbers total(0.0f);
-      for (std::size_t i = 0; i < rays.count; ++i) {
-        Numbers line[row_count];
-        for (std::size_t r = 0; r < row_count; ++r) {
-          const std::size_t at = r * rays.row_stride + i;
-          line[r] = Numbers(left[at]) + lane_column * Numbers(rise[at]);
+    const Steps steps = block.of(i, first_ray);
+    int n = 0;
+    bool met = false;
+    for (; full && n < steps.count; ++n) {
+      const Numbers low(steps.low(n)), sure_low(steps.sure_low(n)), high(steps.sure_high(n));
+      const std::ptrdiff_t offset = steps.offset(n);
+      Mask all = first_lanes(width), reached = first_lanes(0);
+      for (int r = 0; r < at_once; ++r) {
+        const Numbers w = registers[r].at(offset)(registers[r].window.depth);
+        reached = reached | (w >= low), all = all_of(all, w >= sure_low, w <= high);
+      }
+      if (every(all)) {
+        for (int r = 0; r < at_once; ++r) {
+          const Colours<colours> colour(registers[r].window, registers[r].at(offset), 0);
+          for (int c = 0; c < colours; ++c) found[r].colour[c] = found[r].colour[c] + weights[r] * colour.of[c];
         }
-        found.begin_ray(lanes);
-        const auto load_pixels = [&](PixelIndices offsets, PixelIndices before, Mask here, const auto& visit) {
-          load_adjacent(offsets, before, here, visit);
+        met = true;
+        break;
+      }
+      if (any(reached)) break;
+    }
+    made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(n + met);
+    if (met) continue;
+    for (int r = 0; r < at_once; ++r) {
+      made += steps.sure ? follow_steps(registers[r], steps, n, block.end(i), gap, weights[r], found[r])
+                         : follow_lines(registers[r], rays, job.gap, lines, ray, found[r]);
+    }
+  }
+  for (int r = 0; r < at_once; ++r) registers[r].keep(*job.sums, found[r], total[r]);
+  return made;
+}
+
+/// Follows the rays of a tile block by block. If the lines differ nowhere, as for thin lenses, the tile is one block.
+template <int side, bool opaque, int colours>
+std::uint64_t follow_sets(const TileJob& job, const TileRays& rays) noexcept {
+  constexpr int at_once = width == 16 ? 4 : 2;
+  constexpr int block_columns = width, block_rows = 4 * side;  // where lines differ
+  const Lines lines(rays);
+  const Numbers half_across(0.5f * static_cast<float>(block_columns - 1) / static_cast<float>(job.columns)),
+      half_down(0.5f * static_cast<float>(block_rows - 1) / static_cast<float>(job.rows)), half(0.5f);
+  // By how much lines of a block differ from the line at its middle, beyond the tolerance.
+  float* const excess = rays.scratch + 4 * row_count * rays.padded();
+  bool one_block = true;
+  for (std::size_t i = 0; i < rays.row_stride; i += static_cast<std::size_t>(width)) {
+    Numbers beyond(0.0f);
+    Mask alike = first_lanes(width);
+    for (const auto& [depth, px] : rays.tolerances) {
+      beyond = larger(beyond, lines.change(i, Numbers(depth), half_across, half_down) - Numbers(px));
+      alike = all_of(alike, lines.change(i, Numbers(depth), half, half) <= Numbers(px));
+    }
+    store(excess + i, beyond);
+    one_block &= !any(without(first_lanes(rays.row_stride - i), alike));
+  }
+  const int columns = one_block ? job.columns : block_columns, rows = one_block ? job.rows : block_rows;
+  BlockSteps block(rays);
+  std::uint64_t made = 0;
+  for (int set = 0; set < side * side; ++set) {
+    const int row = ((set / side - job.top) % side + side) % side,
+              column = ((set % side - job.left) % side + side) % side;
+    const std::size_t first_ray = static_cast<std::size_t>(set) * rays.count;
+    for (int top = 0; top < job.rows; top += rows) {
+      for (int left = 0; left < job.columns; left += columns) {
+        const auto middle = [](int begin, int length, int all) {
+          return (static_cast<float>(begin) + 0.5f * static_cast<float>(smaller_of(length, all - begin))) /
+                 static_cast<float>(all);
         };
-        made += follow(window, rays, job.gap, line, load_pixels, found);
-        total = total + line[weight];
+        block.make(job, rays, lines, first_ray, middle(left, columns, job.columns), middle(top, rows, job.rows));
+        Register<side> registers[at_once];
+        int waiting = 0;
+        const auto follow_waiting = [&] {
+          if (waiting == at_once) {
+            made += follow_registers<side, opaque, colours, at_once>(job, rays, lines, block, first_ray, registers);
+          } else {
+            for (int r = 0; r < waiting; ++r)
+              made += follow_registers<side, opaque, colours, 1>(job, rays, lines, block, first_ray, registers + r);
+          }
+          waiting = 0;
+        };
+        for (int c = left; c < smaller_of(left + columns, job.columns); c += width) {
+          for (int r = top; r < smaller_of(top + rows, job.rows); r += side * side) {
+            if (r + row >= job.rows || c + column >= job.columns) continue;
+            registers[waiting++] = Register<side>(job, r + row, c + column);
+            if (waiting == at_once) follow_waiting();
+          }
+        }
+        follow_waiting();
       }
-      keep(*job.sums, row * TileSums::columns + column, found, total);
     }
   }
   return made * static_cast<std::uint64_t>(width);
 }
 
 template <bool opaque, int colours>
-std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noexcept {
-  TileSums& sums = *job.sums;
-  std::uint64_t made = 0;
-  const auto sets = static_cast<std::size_t>(rays.side * rays.side);
-  for (std::size_t set = 0; set < sets; ++set) {
-    for (std::size_t begin = 0; begin < rays.count; begin += static_cast<std::size_t>(width)) {
-      const Mask lanes = first_lanes(rays.count - begin);
-      Numbers corner[4][row_count];
-      for (int c = 0; c < 4; ++c) {
-        for (std::size_t r = 0; r < row_count; ++r) {
-          corner[c][r] = only(lanes, load(rays.corners[c] + r * rays.row_stride + set * rays.count + begin));
-        }
-      }
-      for (int row = 0; row < job.rows; ++row) {
-        const Numbers down((static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows));
-        for (int column = 0; column < job.columns; ++column) {
-          if (set_of(job.left + column, job.top + row, rays.side) != set) continue;
-          const Numbers across((static_cast<float>(column) + 0.5f) / static_cast<float>(job.columns));
-          Numbers line[row_count];
-          for (std::size_t r = 0; r < row_count; ++r) {
-            const Numbers from = corner[0][r] + down * (corner[2][r] - corner[0][r]),
-                          to = corner[1][r] + down * (corner[3][r] - corner[1][r]);
-            line[r] = from + across * (to - from);
-          }
-          const LayerWindow window = job.window.from(row, column);
-          GatherState<opaque, colours> found(lanes);
-          const auto load_pixels = [&](PixelIndices offsets, PixelIndices before, Mask here, const auto& visit) {
-            visit(Anywhere{offsets, here}, Anywhere{before, here}, here);
-          };
-          made += follow(window, rays, job.gap, line, load_pixels, found);
-          const int pixel = row * TileSums::columns + column;
-          for (int c = 0; c < colours; ++c) sums.colour[c][pixel] += sum_of(found.colour[c]);
-          if constexpr (!opaque) sums.alpha[pixel] += sum_of(found.alpha);
-          sums.total[pixel] += sum_of(line[weight]);
-          sums.open[pixel] += sum_of(found.open);
-          sums.missed[pixel] += sum_of(found.missed);
-          sums.unknown[pixel] += sum_of(found.unknown);
-        }
-      }
-    }
+std::uint64_t follow_tile(const TileJob& job, const TileRays& rays) noexcept {
+  switch (rays.side) {
+    case 1: return follow_sets<1, opaque, colours>(job, rays);
+    case 2: return follow_sets<2, opaque, colours>(job, rays);
+    default: return follow_sets<4, opaque, colours>(job, rays);
   }
-  return made * static_cast<std::uint64_t>(width);
 }
 
-void transmit(const LayerWindow& window, const DifferentRays& rays, float gap, const Limits& pixels,
+void transmit(const LayerWindow& window, const TileRays& rays, float gap, const Limits& pixels,
               float* fractions) noexcept {
   const Numbers none(no_surface), one(1.0f), to(rays.to);
   const auto within = [](Numbers x, float least, float most) {
@@ -561,20 +708,14 @@ void transmit(const LayerWindow& window, const DifferentRays& rays, float gap, c
   }
 }
 
-#define PETZVAL_FOLLOW(name, Rays)                                                                     \
-  std::uint64_t name(const TileJob& job, const Rays& rays) noexcept {                                  \
-    if (job.opaque) {                                                                                  \
-      return job.colours == 3 ? follow_##name<true, 3>(job, rays) : follow_##name<true, 1>(job, rays); \
-    }                                                                                                  \
-    return job.colours == 3 ? follow_##name<false, 3>(job, rays) : follow_##name<false, 1>(job, rays); \
-  }
-PETZVAL_FOLLOW(same, SameRays)
-PETZVAL_FOLLOW(coherent, DifferentRays)
-PETZVAL_FOLLOW(general, DifferentRays)
+std::uint64_t follow(const TileJob& job, const TileRays& rays) noexcept {
+  if (job.opaque) return job.colours == 3 ? follow_tile<true, 3>(job, rays) : follow_tile<true, 1>(job, rays);
+  return job.colours == 3 ? follow_tile<false, 3>(job, rays) : follow_tile<false, 1>(job, rays);
+}
 
 }  // namespace
 
 extern const GatherLoops PETZVAL_LOOPS;
-const GatherLoops PETZVAL_LOOPS{same, coherent, general, limits, transmit};
+const GatherLoops PETZVAL_LOOPS{follow, limits, transmit};
 
 }  // namespace petzval::blur_detail

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/widest.hpp"
+#include "ray_rows.hpp"
 
 namespace petzval::blur_detail {
 
@@ -36,11 +37,6 @@ struct LayerWindow {
 /// Sums over the rays of each pixel of a tile: weights, and weights times the colour or alpha of the ray.
 struct TileSums {
   static constexpr int columns = 64, rows = 16, pixels = columns * rows;
-  /// Index of the sums of a pixel.
-  /// @param side pixels `side` columns and rows apart get adjacent indices, for SIMD lanes
-  static constexpr int index(int row, int column, int side) noexcept {
-    return (row % side * (rows / side) + row / side) * columns + column % side * (columns / side) + column / side;
-  }
   float colour[3][pixels], alpha[pixels];
   float total[pixels];    ///< weight of all rays
   float open[pixels];     ///< weight of rays that end in the void, where alpha is 0
@@ -48,40 +44,36 @@ struct TileSums {
   float unknown[pixels];  ///< weight of missed rays for which there is no guess
 };
 
-/// A step of a ray that is common to all pixels: at an offset from its own pixel, the ray passes a pixel in a range of
-/// inverse depths.
-struct Step {
-  std::ptrdiff_t offset;
-  float low, high;  ///< low >= 0
-};
-
-/// Rays that are equal for all pixels of a job. Ray i has the steps first[i] to first[i + 1] - 1.
-struct SameRays {
-  std::size_t count = 0;
-  const Step* steps = nullptr;
-  const std::uint32_t* first = nullptr;
-  const float* weights = nullptr;
-  const std::ptrdiff_t* ends = nullptr;  ///< offsets of the pixels at the depth of the farthest surface
-};
-
-/// Rays that differ between pixels: lines at the four corners of the tile (upper left, upper right, lower left, lower
-/// right), each [Row][ray] as in RayTable. Loops read a register beyond the last ray.
-struct DifferentRays {
-  std::size_t count = 0, row_stride = 0;
+/// The rays of a tile: lines at its four corners (upper left, upper right, lower left, lower right), each [Row][ray] as
+/// in RayTable. Loops read a register beyond the last ray.
+struct TileRays {
+  std::size_t count = 0, row_stride = 0;  ///< rays of a set, and of all sets
   const float* corners[4] = {};
-  float* scratch = nullptr;  ///< for `coherent`: 2 row_count row_stride numbers
-  float from = 0, to = 0;    ///< inverse depths at which rays begin and end
-  float most = 0, end = 0;   ///< inverse depths of the nearest (above 0) and the farthest surface
-  int side = 1;              ///< ray sets alternate over blocks of side x side pixels
+  float from = 0, to = 0;   ///< inverse depths at which rays begin and end
+  float most = 0, end = 0;  ///< inverse depths of the nearest (above 0) and the farthest surface
+  int side = 1;             ///< ray sets alternate over blocks of side x side pixels: 1, 2 or 4
+  /// The pixels of a block follow a line at its middle if their own lines differ from it by less than these distances
+  /// (px) at these inverse depths.
+  struct {
+    float depth = 0, px = -1;
+  } tolerances[3] = {};
+  std::size_t most_steps = 0;  ///< no line has more steps between `from` and `to`
+  float* scratch = nullptr;    ///< scratch_size() numbers
+
+  static constexpr std::size_t widest = 16;  ///< lanes of the widest registers
+  /// Length of the rows of coefficients in `scratch`.
+  constexpr std::size_t padded() const noexcept { return row_stride + widest; }
+  static constexpr std::size_t numbers_of_ray(std::size_t steps) noexcept { return 3 * steps + 8; }
+  constexpr std::size_t scratch_size() const noexcept {
+    return (4 * row_count + 1) * padded() + (count + widest) * numbers_of_ray(most_steps);
+  }
 };
 
-/// A tile or, for `same`, the pixels of a tile that share one set of rays: every side-th column and row.
+/// A tile of the picture.
 struct TileJob {
   LayerWindow window;
   int columns = 0, rows = 0;  ///< number of pixels
-  int side = 1;               ///< for `same`: 1, 2 or 4
   int left = 0, top = 0;      ///< position of the first pixel in the picture
-  int first_sum = 0;          ///< TileSums::index() of the first pixel
   int colours = 3;            ///< colours per ray, 3 or 1
   bool opaque = true;
   float gap = 0;  ///< surfaces of adjacent pixels are joined up to this difference of inverse depths
@@ -94,11 +86,9 @@ struct Limits {
 };
 
 struct GatherLoops {
-  /// Each returns the number of steps of all lanes. `same` and `coherent` store sums, also for pixels in the same row
-  /// beyond the tile; `general` adds to sums.
-  std::uint64_t (*same)(const TileJob&, const SameRays&) noexcept;
-  std::uint64_t (*coherent)(const TileJob&, const DifferentRays&) noexcept;
-  std::uint64_t (*general)(const TileJob&, const DifferentRays&) noexcept;
+  /// Follows the rays of all pixels of a tile and stores their sums, also for pixels in the same row beyond the tile.
+  /// Returns the number of steps of all lanes.
+  std::uint64_t (*follow)(const TileJob&, const TileRays&) noexcept;
   /// Offsets of `count` rays at some corners between two inverse depths. Corners are [Row][ray] with rows `stride`
   /// apart; one more register is read. Lines are straight, so the extremes lie at the ends.
   Limits (*limits)(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count,
@@ -108,7 +98,7 @@ struct GatherLoops {
   /// @param rays   lines at corners[0], relative to the pixel of the highlight; they end at the inverse depth `to`
   /// @param gap    as in TileJob
   /// @param pixels first and last pixels of the layers, relative to the pixel of the highlight
-  void (*transmit)(const LayerWindow& window, const DifferentRays& rays, float gap, const Limits& pixels,
+  void (*transmit)(const LayerWindow& window, const TileRays& rays, float gap, const Limits& pixels,
                    float* fractions) noexcept;
 };
 

@@ -15,9 +15,6 @@ namespace petzval {
 /// Work memory of the threads of gather(), kept between pictures.
 struct BlurredImage::Memory {
   struct OfThread {
-    std::vector<blur_detail::Step> steps;
-    std::vector<std::uint32_t> first;
-    std::vector<std::ptrdiff_t> ends;
     std::vector<float> corners[4], scratch, window;
     blur_detail::TileSums sums[3];
   };

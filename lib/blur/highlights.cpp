@@ -214,13 +214,13 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
 void Highlights::hide(const Highlight& h, const Lines& lines, std::size_t count, std::vector<float>& through) const {
   // A surface that is nearer by less than this margin, the offset of the umbra, hides the highlight from no ray.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
-  DifferentRays rays{.count = count,
-                     .row_stride = lines.stride(),
-                     .corners = {lines.rows.data()},
-                     .from = nearest_,
-                     .to = static_cast<float>(h.inverse_depth + margin),
-                     .most = nearest_,
-                     .end = farthest_};
+  TileRays rays{.count = count,
+                .row_stride = lines.stride(),
+                .corners = {lines.rows.data()},
+                .from = nearest_,
+                .to = static_cast<float>(h.inverse_depth + margin),
+                .most = nearest_,
+                .end = farthest_};
   // Start at the nearest of all surfaces, then at the nearest surface below the paths that follow from it.
   for (int i = 0; i < 2; ++i) {
     const Limits reach = gather_loops().limits(rays.corners, 1, rays.row_stride, count, rays.from, h.inverse_depth);

@@ -56,17 +56,21 @@ class PixelSteps {
   PETZVAL_INLINE T last() const noexcept { return last_; }
   /// Inverse depths in a step lie between low(n) and low(n - 1).
   PETZVAL_INLINE T low(T n) const noexcept { return middle_ - (n + T(0.5f)) * length_; }
+  /// Range of inverse depths of a step.
+  PETZVAL_INLINE T length() const noexcept { return length_; }
   /// The pixel of a step, relative to pixel (0, 0), in whole numbers.
   struct Pixel {
     T column, row;
+    T beyond;  ///< position across the main direction beyond the edge of the pixel
   };
   PETZVAL_INLINE Pixel pixel(T n) const noexcept {
     // The middle of a step, clamped to the depths of the scene: a line that moves by less than a pixel stays in its
     // pixel.
     T w = middle_ - n * length_;
     w = select(w < farthest_, farthest_, w), w = select(w > nearest_, nearest_, w);
-    const T main = first_ + towards_ * n, other = WholePixel<T>::below(other_at_ + other_slope_ * w + T(0.5f));
-    return {select(along_columns_, main, other), select(along_columns_, other, main)};
+    const T main = first_ + towards_ * n, across = other_at_ + other_slope_ * w + T(0.5f),
+            other = WholePixel<T>::below(across);
+    return {select(along_columns_, main, other), select(along_columns_, other, main), across - other};
   }
 
  private:
