@@ -12,7 +12,6 @@
 namespace {
 
 using namespace petzval;
-using blur_detail::GatherPath;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -97,13 +96,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
     const double bias = bytes.one_in(2) ? plan.bias : 0;
     layers.peel_fragments(lists, bias, bytes.count(1, 4));
-    const auto path = static_cast<GatherPath>(bytes.count(0, 3));
-    const blur_detail::GatherMethod way{path, !bytes.one_in(4)};
+    const blur_detail::GatherMethod way{bytes.one_in(2), !bytes.one_in(4)};
     const GatherOptions options{.highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
     const BlurredImage picture = blur_detail::gather(layers, rays, options, way);
     check(picture, tame);
-    if (!tame || options.highlights_above > 0 || path == GatherPath::shift_invariant || layers.count() == 0) return;
-    if (path == GatherPath::automatic && rays.shift_invariant()) return;
+    if (!tame || options.highlights_above > 0 || layers.count() == 0) return;
     fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.limit_steps) < 0.1,
                   "a picture equals the reference");
   });
