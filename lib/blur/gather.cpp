@@ -82,10 +82,11 @@ class Gathering {
     const std::size_t stride = rays_.table.rays;
     const float* corners[4];
     for (int c = 0; c < 4; ++c) {
+      corners[c] = rays_.table.node(channel, 0, 0);
+      if (rays_.shift_invariant) continue;
       std::vector<float>& corner = memory.corners[c];
       corner.resize(rays_.table.node_size() + 64);
-      corners[c] = rays_.shift_invariant ? rays_.table.node(channel, 0, 0) : corner.data();
-      if (rays_.shift_invariant) continue;
+      corners[c] = corner.data();
       rays_.table.at(channel, tile.left + (c % 2) * tile.columns, tile.top + (c / 2) * tile.rows, corner.data());
     }
     const GatherLoops& loops = gather_loops();

@@ -227,7 +227,6 @@ PETZVAL_INLINE void give_up(Numbers weight, GatherState<opaque, colours>& found)
 Limits limits(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count, float w,
               float v) noexcept {
   const auto smaller = [](Numbers a, Numbers b) { return select(a < b, a, b); };
-  const auto larger = [](Numbers a, Numbers b) { return select(a > b, a, b); };
   Numbers least_x(1e9f), most_x(-1e9f), least_y(1e9f), most_y(-1e9f);
   for (std::size_t c = 0; c < corner_count; ++c) {
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(width)) {
@@ -333,6 +332,9 @@ class Lines {
         store(numbers_ + (1 * row_count + r) * padded_ + i, across);
         store(numbers_ + (2 * row_count + r) * padded_ + i, down);
         store(numbers_ + (3 * row_count + r) * padded_ + i, corner(3) - corner(2) - across);
+        if (r != weight) continue;
+        const Numbers none(0.0f), change = size_of(across) + size_of(down) + size_of(corner(3) - corner(0));
+        even_weights_ &= !any(all_of(change > none, first_lanes(rays.row_stride - i)));
       }
     }
   }
@@ -344,6 +346,9 @@ class Lines {
   /// A row of the lines of one ray at the positions of the lanes.
   PETZVAL_INLINE Numbers of_ray(std::size_t row, std::size_t ray, Numbers across, Numbers down) const noexcept {
     return sum([&](int c) { return Numbers(*at(c, row, ray)); }, across, down);
+  }
+  PETZVAL_INLINE Numbers weight_of(std::size_t ray, Numbers across, Numbers down) const noexcept {
+    return even_weights_ ? Numbers(*at(0, weight, ray)) : of_ray(weight, ray, across, down);
   }
   /// The largest change of lines of adjacent rays, at an inverse depth, over half of an area of the tile, px.
   PETZVAL_INLINE Numbers change(std::size_t ray, Numbers w, Numbers half_across, Numbers half_down) const noexcept {
@@ -366,21 +371,25 @@ class Lines {
 
   std::size_t padded_;
   float* numbers_;
+  bool even_weights_ = true;  ///< equal at all corners
 };
+
+/// An integer that was stored among numbers.
+PETZVAL_INLINE std::int32_t integer_at(const float* from) noexcept {
+  std::int32_t result;
+  __builtin_memcpy(&result, from, sizeof result);
+  return result;
+}
 
 /// The steps of the line at the middle of a block. In step n, from 0, the ray passes the pixel at offset(n) from its
 /// own pixel, in the range of inverse depths from low(n) >= 0 to low(n - 1).
 struct Steps {
   static constexpr int numbers_of_step = 3;
-  const float* numbers;  ///< of each step, from -1: `width` offsets, lows and sure lows of adjacent rays
+  const float* numbers;  ///< `width` offsets, lows and sure lows of adjacent rays for each step, from -1
   int count;
   bool sure;  ///< the line serves all pixels of the block
 
-  PETZVAL_INLINE std::ptrdiff_t offset(int n) const noexcept {
-    std::int32_t result;
-    __builtin_memcpy(&result, at(n, 0), sizeof result);
-    return result;
-  }
+  PETZVAL_INLINE std::ptrdiff_t offset(int n) const noexcept { return integer_at(at(n, 0)); }
   PETZVAL_INLINE float low(int n) const noexcept { return *at(n, 1); }
   /// Surfaces from sure_low(n) to sure_high(n) are met in step n by the lines of all pixels, those below sure_high(n +
   /// 1) in a later step.
@@ -397,8 +406,8 @@ struct Steps {
 class BlockSteps {
  public:
   explicit BlockSteps(const TileRays& rays) noexcept
-      : groups_(rays.scratch + (4 * row_count + 1) * rays.padded()),
-        excess_(rays.scratch + 4 * row_count * rays.padded()),
+      : groups_(rays.excess() + rays.padded()),
+        excess_(rays.excess()),
         capacity_(TileRays::numbers_of_ray(rays.most_steps)) {}
 
   /// @param first the first ray of the set
@@ -437,20 +446,15 @@ class BlockSteps {
   }
 
   PETZVAL_INLINE Steps of(std::size_t ray, std::size_t first) const noexcept {
-    return {group(ray) + 2 * width, number(group(ray)), !(excess_[first + ray] > 0)};
+    return {group(ray) + 2 * width, integer_at(group(ray)), !(excess_[first + ray] > 0)};
   }
   /// Offset of the pixel at the depth of the farthest surface.
-  PETZVAL_INLINE std::ptrdiff_t end(std::size_t ray) const noexcept { return number(group(ray) + width); }
+  PETZVAL_INLINE std::ptrdiff_t end(std::size_t ray) const noexcept { return integer_at(group(ray) + width); }
 
  private:
   PETZVAL_INLINE const float* group(std::size_t ray) const noexcept {
     const std::size_t lane = ray % static_cast<std::size_t>(width);
     return groups_ + (ray - lane) * capacity_ + lane;
-  }
-  static PETZVAL_INLINE std::int32_t number(const float* from) noexcept {
-    std::int32_t result;
-    __builtin_memcpy(&result, from, sizeof result);
-    return result;
   }
 
   float *groups_, *excess_;
@@ -463,7 +467,7 @@ struct Register {
   static constexpr int in_row = width / side;
 
   LayerWindow window;         ///< at the first pixel
-  std::ptrdiff_t rows[side];  ///< offsets of the rows; of the last one for rows below the tile
+  std::ptrdiff_t rows[side];  ///< offsets of the rows; rows below the tile have the offset of its last row
   PixelIndices own;           ///< offsets of all pixels
   Numbers across, down;       ///< positions in the tile
   Mask lanes;                 ///< pixels in the tile
@@ -549,7 +553,7 @@ PETZVAL_INLINE std::uint64_t follow_lines(const Register<side>& pixels, const Ti
 }
 
 /// Follows the rays of some registers of a block. In most cases all pixels meet the first layer in the same step and
-/// need no masks. Otherwise, pixels follow their own lines unless the line of the block serves all of them.
+/// need no masks. Otherwise, pixels follow their own lines if the line of the block does not serve all pixels.
 template <int side, bool opaque, int colours, int at_once>
 std::uint64_t follow_registers(const TileJob& job, const TileRays& rays, const Lines& lines, const BlockSteps& block,
                                std::size_t first_ray, const Register<side>* registers) noexcept {
@@ -564,7 +568,7 @@ std::uint64_t follow_registers(const TileJob& job, const TileRays& rays, const L
     const std::size_t ray = first_ray + i;
     Numbers weights[at_once];
     for (int r = 0; r < at_once; ++r) {
-      weights[r] = lines.of_ray(weight, ray, registers[r].across, registers[r].down);
+      weights[r] = lines.weight_of(ray, registers[r].across, registers[r].down);
       total[r] = total[r] + weights[r];
     }
     const Steps steps = block.of(i, first_ray);
@@ -608,7 +612,7 @@ std::uint64_t follow_sets(const TileJob& job, const TileRays& rays) noexcept {
   const Numbers half_across(0.5f * static_cast<float>(block_columns - 1) / static_cast<float>(job.columns)),
       half_down(0.5f * static_cast<float>(block_rows - 1) / static_cast<float>(job.rows)), half(0.5f);
   // By how much lines of a block differ from the line at its middle, beyond the tolerance.
-  float* const excess = rays.scratch + 4 * row_count * rays.padded();
+  float* const excess = rays.excess();
   bool one_block = true;
   for (std::size_t i = 0; i < rays.row_stride; i += static_cast<std::size_t>(width)) {
     Numbers beyond(0.0f);

@@ -64,6 +64,8 @@ struct TileRays {
   /// Length of the rows of coefficients in `scratch`.
   constexpr std::size_t padded() const noexcept { return row_stride + widest; }
   static constexpr std::size_t numbers_of_ray(std::size_t steps) noexcept { return 3 * steps + 8; }
+  /// In `scratch`, after the coefficients of the lines: one number per ray.
+  float* excess() const noexcept { return scratch + 4 * row_count * padded(); }
   constexpr std::size_t scratch_size() const noexcept {
     return (4 * row_count + 1) * padded() + (count + widest) * numbers_of_ray(most_steps);
   }
