@@ -10,7 +10,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/editor/focus_editor.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval::testing {
 

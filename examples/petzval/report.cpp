@@ -18,7 +18,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"

@@ -12,7 +12,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -13,6 +13,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -14,7 +14,7 @@
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "suggest.hpp"
 #include "text.hpp"
 

@@ -22,6 +22,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "support/files.hpp"
 #include "support/interrupt.hpp"
 #include "support/picture_files.hpp"

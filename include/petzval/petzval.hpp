@@ -68,6 +68,7 @@
 #include "petzval/prescription/coating.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"

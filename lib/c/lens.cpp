@@ -13,6 +13,7 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval::c_detail {

@@ -10,6 +10,7 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval {
 

@@ -13,9 +13,8 @@
 #include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/lint.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::formats_detail {

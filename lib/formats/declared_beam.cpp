@@ -10,6 +10,7 @@
 #include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval::formats_detail {

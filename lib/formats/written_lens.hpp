@@ -8,8 +8,8 @@
 #include "declared_beam.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval::formats_detail {
 

@@ -15,6 +15,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "pupil/pupil_boundary.hpp"

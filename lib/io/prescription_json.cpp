@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval {
 namespace io_detail {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compile() is defined here and not in the module lens, because aimed rays find apertures that a prescription lacks.
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "lens/edges.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval {

@@ -17,8 +17,8 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

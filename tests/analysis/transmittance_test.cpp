@@ -15,7 +15,7 @@
 #include "analysis/pupil_nodes.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"
 

@@ -32,6 +32,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
 #include "trace_work.hpp"

@@ -16,6 +16,7 @@
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "table.hpp"
 
 namespace {

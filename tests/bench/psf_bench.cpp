@@ -15,6 +15,7 @@
 #include "petzval/analysis/psf.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"
 #include "pupil/ray_bundle.hpp"

@@ -12,6 +12,7 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"
 #include "table.hpp"

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "../trace/extended.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 

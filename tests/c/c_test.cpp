@@ -17,8 +17,8 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/petzval.h"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace {

@@ -17,7 +17,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval {

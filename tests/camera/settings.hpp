@@ -8,8 +8,8 @@
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval::testing {

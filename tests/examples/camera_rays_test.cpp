@@ -5,6 +5,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

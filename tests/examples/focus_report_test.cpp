@@ -6,6 +6,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {

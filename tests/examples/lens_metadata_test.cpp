@@ -4,6 +4,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {

@@ -11,6 +11,7 @@
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 #include "relay_zmx.hpp"

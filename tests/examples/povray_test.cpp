@@ -12,6 +12,7 @@
 #include "petzval/image/image.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {

@@ -8,6 +8,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 #include "relay_zmx.hpp"

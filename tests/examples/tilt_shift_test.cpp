@@ -7,6 +7,7 @@
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {

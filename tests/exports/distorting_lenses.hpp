@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "petzval/core/film.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval::testing {
 

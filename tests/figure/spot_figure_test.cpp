@@ -12,6 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

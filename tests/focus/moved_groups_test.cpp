@@ -8,8 +8,8 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace moved_groups_test {
 

@@ -7,8 +7,8 @@
 
 #include "../expect_error.hpp"
 #include "lens_text.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace codev_test {

@@ -16,7 +16,7 @@
 #include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "said.hpp"
 
 namespace glass_files_test {

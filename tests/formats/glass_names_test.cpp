@@ -16,8 +16,8 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace glass_names_test {
 

@@ -9,9 +9,8 @@
 #include "../positioned.hpp"
 #include "core/text.hpp"
 #include "lens_text.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace json_lenses_test {
 

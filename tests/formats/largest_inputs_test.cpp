@@ -15,7 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval {
 namespace largest_inputs_test {

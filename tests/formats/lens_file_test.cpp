@@ -13,8 +13,8 @@
 #include "../expect_error.hpp"
 #include "lens_text.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace lens_file_test {
 

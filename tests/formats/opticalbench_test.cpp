@@ -8,8 +8,8 @@
 
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "said.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "said.hpp"
 
 namespace oslo_test {

@@ -13,8 +13,8 @@
 #include "../message.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 

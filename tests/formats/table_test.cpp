@@ -16,8 +16,8 @@
 #include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/formats/lens_file.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace table_test {

@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace zemax_test {

@@ -6,7 +6,7 @@
 
 #include "../data_lenses.hpp"
 #include "bytes.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace petzval::fuzz {
 

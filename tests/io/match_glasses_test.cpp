@@ -10,8 +10,8 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace match_glasses_test {
 

@@ -14,7 +14,7 @@
 
 #include "../asphere_scan.hpp"
 #include "../report.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace asphere_test {
 

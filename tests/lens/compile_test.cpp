@@ -13,7 +13,7 @@
 #include "../message.hpp"
 #include "core/text.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace compile_test {
 

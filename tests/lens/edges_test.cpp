@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

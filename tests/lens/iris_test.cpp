@@ -12,7 +12,7 @@
 #include "../expect_error.hpp"
 #include "../message.hpp"
 #include "lens/any_semi_diameter.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 

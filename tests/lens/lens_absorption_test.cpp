@@ -5,8 +5,8 @@
 
 #include "../expect_error.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace lens_absorption_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 #include <gtest/gtest.h>
 

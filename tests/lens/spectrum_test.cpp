@@ -15,8 +15,8 @@
 #include "lens/between_wavelengths.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 
 namespace spectrum_test {
 

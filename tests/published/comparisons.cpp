@@ -15,8 +15,8 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::testing {

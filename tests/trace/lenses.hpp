@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 

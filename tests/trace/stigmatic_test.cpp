@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "trace/sequential.hpp"
 
 namespace stigmatic_test {

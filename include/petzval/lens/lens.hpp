@@ -45,7 +45,7 @@ enum class Dispersion {
 /// "catalogue", "abbe" or "none".
 PETZVAL_API std::string_view name(Dispersion dispersion) noexcept;
 
-/// Options of compile(): glasses, configuration and wavelengths.
+/// Options of compile() (pupil/apertures.hpp): glasses, configuration and wavelengths.
 struct CompileOptions {
   const GlassCatalogue* glasses = nullptr;  ///< nullptr: glass_tables(), loaded if a medium names a glass
   IndexPolicy index_policy = IndexPolicy::printed;
@@ -206,23 +206,6 @@ class PETZVAL_API Lens {
   explicit Lens(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;
 };
-
-/// Compiles a prescription for a list of wavelengths.
-///
-/// Surfaces without a clear aperture get a computed aperture, as by with_apertures() (pupil/f_number.hpp).
-///
-/// @param prescription    the lens; options.configuration selects one of its configurations
-/// @param wavelengths_nm  at least one wavelength (nm)
-/// @param options         glasses, their treatment, configuration and primary wavelength
-/// @throws Error with lens and surface if the prescription is invalid; if a wavelength occurs twice (within
-///               1e-6 nm) or lies outside the range of a glass (unless clamp_wavelengths is set); if a glass is missing
-///               (see MissingGlass; always if the medium states no index); if an index is outside 0.1 to 5; if
-///               primary_nm is not a compiled wavelength
-PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
-                         const CompileOptions& options = {});
-
-/// Compiles a prescription for its reference wavelength only.
-PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions& options = {});
 
 /// The lens with another clear aperture of one surface.
 ///
