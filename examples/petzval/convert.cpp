@@ -28,6 +28,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
@@ -67,7 +68,7 @@ std::vector<ImportWarning> write_text(const petzval::ExportedLens& written, cons
 
 /// Losses of a file that describes the effect of a lens but not its construction.
 std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval::Lens& compiled) {
-  const petzval::Film film = petzval::film_of(lens, compiled);
+  const petzval::Film film = petzval::default_film(compiled, lens.image_diagonal_mm);
   std::vector<ImportWarning> losses{{0, "surfaces",
                                      "are lost; the file has only the effect of the lens on a picture of " +
                                          examples::number(film.width_mm, 4) + " x " +
@@ -81,15 +82,15 @@ constexpr std::array outputs{
     Output{".opentrackio.json",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_open_track_io(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens),
-                                          options.out);
+             petzval::write_open_track_io(compiled, petzval::default_film(compiled, lens.image_diagonal_mm),
+                                          petzval::identity_of(lens), options.out);
              return only_metadata(lens, compiled);
            }},
     Output{".stmap.exr",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), options.out,
-                                   {}, examples::threads());
+             petzval::write_st_map(compiled, petzval::default_film(compiled, lens.image_diagonal_mm),
+                                   petzval::identity_of(lens), options.out, {}, examples::threads());
              return only_metadata(lens, compiled);
            }},
     Output{".json",

@@ -26,8 +26,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Points that have faded to less are hidden.
 constexpr double least_fade = 1e-3;
-/// Height of the film without an angle of view, mm.
-constexpr double usual_film_height = 24;
 
 /// A lens at a distance, with the upright film that shows the angle of the scene.
 struct Focused {
@@ -41,7 +39,7 @@ struct Focused {
 
 Focused with_scene_film(const FocusScene& scene, Lens lens, double focus_mm) {
   const double height =
-      scene.vertical_angle_rad > 0 ? film_height_for_angle(lens, scene.vertical_angle_rad) : usual_film_height;
+      scene.vertical_angle_rad > 0 ? film_height_for_angle(lens, scene.vertical_angle_rad) : Film().height_mm;
   const Film film{.width_mm = height * scene.columns / scene.rows,
                   .height_mm = height,
                   .columns = scene.columns,

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/least_squares.hpp"
-#include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -16,20 +15,6 @@ namespace petzval {
 
 LensIdentity identity_of(const Prescription& prescription) {
   return {.model = prescription.name, .nominal_focal_length_mm = prescription.focal_length_mm};
-}
-
-Film film_of(const Prescription& prescription, const Lens& lens) {
-  constexpr double min_irradiance_fraction = 0.1;  // fraction of the irradiance on the axis
-  const bool declared = prescription.image_diagonal_mm.has_value();
-  const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, min_irradiance_fraction);
-  if (!(diagonal > 0 && std::isfinite(diagonal))) {
-    throw Error(lens.name() + ": film: the " +
-                (declared ? "declared image diagonal = " + to_text(diagonal) + " mm; must be finite and above 0"
-                          : "prescription declares no image diagonal and the image circle = " + to_text(diagonal) +
-                                " mm; must be finite and above 0"));
-  }
-  const double unit = diagonal / std::hypot(3.0, 2.0);
-  return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
 }
 
 LensState lens_state(const LensDistortion& distortion) {

@@ -75,16 +75,6 @@ Box box_at(const Lens& lens, double radius, std::size_t wavelength) {
   return box;
 }
 
-Film usual_film(const Lens& lens) {
-  Film film;
-  const double diagonal = std::hypot(film.width_mm, film.height_mm);
-  if (const double circle = image_circle_mm(lens, 0.1); circle < diagonal) {
-    film.width_mm *= circle / diagonal;
-    film.height_mm *= circle / diagonal;
-  }
-  return film;
-}
-
 class OslCamera {
  public:
   OslCamera(const Lens& lens, const std::optional<Film>& film);
@@ -116,7 +106,7 @@ class OslCamera {
 
 OslCamera::OslCamera(const Lens& lens, const std::optional<Film>& film) : lens_(with_iris(lens, Iris{})) {
   check();
-  film_ = film.value_or(usual_film(lens_));
+  film_ = film ? *film : default_film(lens_, {}, std::hypot(Film().width_mm, Film().height_mm));
   if (!(film_.width_mm > 0 && film_.height_mm > 0))
     throw Error(lens.name() + ": film without area; area must be positive");
   const Meridian main = main_meridian(lens_);

@@ -81,4 +81,17 @@ std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& 
   return film_irradiance(lens, {image.x, image.y}, wavelength) / axis;
 }
 
+Film default_film(const Lens& lens, std::optional<double> diagonal_mm, double largest_mm) {
+  constexpr double least_fraction = 0.1;
+  const double diagonal = diagonal_mm ? *diagonal_mm : std::min(image_circle_mm(lens, least_fraction), largest_mm);
+  if (!(diagonal > 0 && std::isfinite(diagonal))) {
+    throw Error(lens.name() + ": film: the " +
+                (diagonal_mm ? "declared image diagonal = "
+                             : "prescription declares no image diagonal and the image circle = ") +
+                to_text(diagonal) + " mm; must be finite and above 0");
+  }
+  const double unit = diagonal / std::hypot(3.0, 2.0);
+  return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
+}
+
 }  // namespace petzval

@@ -13,7 +13,6 @@
 #include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
-#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 
@@ -172,7 +171,8 @@ TEST(BrownConrady, FindsTheRationalLeastSquaresFit) {
        {std::tuple("tessar_100mm_f5.5_1902", to_distorted, 0.03), std::tuple("heliar_100mm_f4", to_distorted, 0.001),
         std::tuple("biotar_100mm_f1.4", to_undistorted, 0.05)}) {
     const Lens lens = data_lens(id);
-    const LensDistortion distortion = distortion_of(lens, film_of(testing::data_prescription(id), lens));
+    const LensDistortion distortion =
+        distortion_of(lens, default_film(lens, testing::data_prescription(id).image_diagonal_mm));
     EXPECT_LT(fit_brown_conrady(distortion, direction).rms_px, rms_px) << id;
   }
 }

@@ -13,10 +13,10 @@
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/exports/lens_metadata.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace lens_distortion_test {
@@ -59,7 +59,7 @@ TEST(LensDistortion, KeepsTheScaleOnTheAxis) {
                                    std::pair("tessar_100mm_f2.8", 1e-6)}) {
     const Lens lens = data_lens(id);
     for (const double size : {1.0, 0.1}) {
-      Film film = film_of(testing::data_prescription(id), lens);
+      Film film = default_film(lens, testing::data_prescription(id).image_diagonal_mm);
       film.width_mm *= size, film.height_mm *= size;
       const auto focal_length = [&](ModelKind model) {
         return LensDistortion(Camera(lens, film, {.model = model})).pinhole().focal_length_mm.y;
@@ -75,7 +75,7 @@ TEST(LensDistortion, IsInvertedUpToTheCorners) {
     SCOPED_TRACE(id);
     const Prescription prescription = petzval::testing::data_prescription(id);
     const Lens lens = with_focus(compile(prescription), 2000);
-    const Film film = film_of(prescription, lens);
+    const Film film = default_film(lens, prescription.image_diagonal_mm);
     const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
     int found = 0;
     for (int row = 0; row <= 8; ++row) {

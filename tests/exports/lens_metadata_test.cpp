@@ -9,7 +9,6 @@
 #include <string>
 
 #include "../data_lenses.hpp"
-#include "../expect_error.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/analysis/transmittance.hpp"
 #include "petzval/focus/focus.hpp"
@@ -23,27 +22,10 @@ namespace lens_metadata_test {
 
 using testing::data_lens;
 using testing::data_prescription;
-using testing::expect_error;
 using testing::small_film;
 
 LensState state_of(const Lens& lens) {
   return lens_state(LensDistortion(Camera(lens, small_film(24), {.model = ModelKind::exact_double})));
-}
-
-TEST(LensMetadata, FilmHasTheDeclaredDiagonalOrTheImageCircle) {
-  Prescription p = data_prescription("biogon_35mm_f2.8");
-  p.image_diagonal_mm = 40;
-  Film film = film_of(p, compile(p));
-  EXPECT_NEAR(std::hypot(film.width_mm, film.height_mm), 40, 1e-12);
-  EXPECT_NEAR(film.width_mm / film.height_mm, 1.5, 1e-12);
-  EXPECT_EQ(film.columns * 2, film.rows * 3);
-  p.image_diagonal_mm.reset();
-  film = film_of(p, compile(p));
-  EXPECT_NEAR(std::hypot(film.width_mm, film.height_mm), image_circle_mm(compile(p), 0.1), 1e-9);
-  const Lens closed = with_semi_diameter(compile(p), compile(p).stop().value(), 0);
-  expect_error([&] { film_of(p, closed); }, {p.name, "film"});
-  p.image_diagonal_mm = -1;
-  expect_error([&] { film_of(p, compile(p)); }, {p.name, "film", "declared", -1});
 }
 
 TEST(LensMetadata, IdentityEqualsThePrescription) {

@@ -10,7 +10,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "distorting_lenses.hpp"
-#include "petzval/exports/lens_metadata.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace st_map_test {
@@ -144,7 +144,7 @@ TEST(StMap, EqualsTheDistortionUpToTheImageCircle) {
   for (const char* id : {"anamorphic_60mm_2x", "tessar_100mm_f3.5", "primoplan_100mm_f1.9", "fisheye_16mm_f2.8"}) {
     SCOPED_TRACE(id);
     const Lens lens = data_lens(id);
-    Film film = film_of(testing::data_prescription(id), lens);
+    Film film = default_film(lens, testing::data_prescription(id).image_diagonal_mm);
     film.columns = 480, film.rows = 320;
     const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
     const StMaps maps = st_maps(distortion);

@@ -436,6 +436,20 @@ TEST(ImageCircle, IsZeroForDarkLensesAndLargeForOpenLenses) {
   }
 }
 
+TEST(DefaultFilm, HasTheDeclaredDiagonalOrTheImageCircle) {
+  const Lens lens = data_lens("biogon_35mm_f2.8");
+  const auto diagonal = [](const Film& film) { return std::hypot(film.width_mm, film.height_mm); };
+  const Film declared = default_film(lens, 40);
+  EXPECT_NEAR(diagonal(declared), 40, 1e-12);
+  EXPECT_NEAR(declared.width_mm / declared.height_mm, 1.5, 1e-12);
+  EXPECT_EQ(declared.columns * 2, declared.rows * 3);
+  const double circle = image_circle_mm(lens, 0.1);
+  EXPECT_NEAR(diagonal(default_film(lens)), circle, 1e-9);
+  EXPECT_NEAR(diagonal(default_film(lens, {}, circle / 2)), circle / 2, 1e-9);
+  testing::expect_error([&] { default_film(lens, -1); }, {lens.name(), "film", "declared", -1});
+  testing::expect_error([&] { default_film(with_semi_diameter(lens, lens.stop().value(), 0)); }, {lens.name(), "film"});
+}
+
 TEST(FilmIrradiance, StopWithoutRimIsLimitedByOtherRims) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   EXPECT_EQ(film_irradiance(marked, {}), film_irradiance(unmarked, {}));

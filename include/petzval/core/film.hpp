@@ -29,7 +29,7 @@ struct FilmPoint {
 ///     const TiltFit fit = fit_tilt(thick_lens(lens), targets, {.film = film});
 ///     const Camera tilted(lens, fit.film);
 struct PETZVAL_API Film {
-  double width_mm = 36, height_mm = 24;
+  double width_mm = 36, height_mm = 24;  ///< the default of every program; for one lens: default_film()
   int columns = 3840, rows = 2560;
   double shift_x_mm = 0, shift_y_mm = 0;  ///< film point at the centre of the rectangle
   /// Width of a margin around the rectangle, for overscan and for pixel filters that reach over the edge.

@@ -24,14 +24,6 @@ struct LensIdentity {
 /// The identity of a prescription: its name as the model, and its nominal focal length.
 PETZVAL_API LensIdentity identity_of(const Prescription& prescription);
 
-/// A default film for a lens: 3:2 with 1920 x 1280 pixels.
-///
-/// The diagonal is the image diagonal of the prescription. If the prescription declares no diagonal, it is the diameter
-/// of the image circle within which the irradiance is at least a tenth of the irradiance on the axis.
-///
-/// @throws Error unless the diagonal is positive and finite; an image circle above 1000 focal lengths is infinite
-PETZVAL_API Film film_of(const Prescription& prescription, const Lens& lens);
-
 /// Lens settings, with the terms of OpenEXR and OpenTrackIO.
 struct LensState : ApertureState {
   double effective_focal_length_mm = 0;  ///< in the main meridian

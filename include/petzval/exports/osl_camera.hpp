@@ -42,8 +42,7 @@ class Lens;
 ///
 /// @param lens     the lens
 /// @param film     the largest film that the shader supports; its width and height are the defaults of the shader's
-///                 parameters. nullopt: 36 x 24 mm, or the largest 3:2 film inside the circle with at least a tenth of
-///                 the axial irradiance.
+///                 parameters. nullopt: default_film(), at most 36 x 24 mm
 /// @throws Error   for mirrors; if the lens has no marked stop with a rim; if the film has no area; if with_focus() at
 ///                 infinity or rgb_weights() throws; if the template cannot be read or has an unknown name
 ///

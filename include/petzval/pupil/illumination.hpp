@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "petzval/core/config.hpp"
@@ -44,5 +45,15 @@ PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const 
 ///
 /// Limitations: heights are tested in steps of a tenth of the focal length; a dark ring between two steps is missed.
 PETZVAL_API double image_circle_mm(const Lens& lens, double least_fraction = 0, Wavelength wavelength = {});
+
+/// The default film of a lens: 3:2 with 1920 x 1280 pixels.
+///
+/// @param lens         the lens
+/// @param diagonal_mm  the declared diagonal, for example Prescription::image_diagonal_mm. nullopt: the diameter of the
+///                     image circle with at least a tenth of the irradiance on the axis
+/// @param largest_mm   limit of the diameter of the image circle; the diagonal of Film{} gives at most 36 x 24 mm
+/// @throws Error       unless the diagonal is positive and finite
+PETZVAL_API Film default_film(const Lens& lens, std::optional<double> diagonal_mm = {},
+                              double largest_mm = std::numeric_limits<double>::infinity());
 
 }  // namespace petzval
