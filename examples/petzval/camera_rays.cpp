@@ -5,7 +5,6 @@
 //   petzval camera-rays double_gauss_100mm_f2.0 --table samples.csv --out rays.csv --focus 3000 --f-number 4
 //   petzval camera-rays double_gauss_100mm_f2.0 --povray --size 160 --spp 64 --focus 3000 --out lens.inc
 #include "commands.hpp"
-#include "povray_camera.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +16,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/exports/renderer_cameras.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
@@ -178,7 +178,7 @@ int commands::camera_rays(int argc, char** argv) {
       }
       const auto loaded = examples::load_lens(setup.lens, std::array{petzval::d_line_nm});
       const petzval::Camera camera = camera_of(loaded, film, petzval::Normalisation::unity_on_axis);
-      return examples::write_text(out_file, examples::povray_camera(camera, samples_per_pixel));
+      return examples::write_text(out_file, petzval::format_povray_camera(camera, static_cast<int>(samples_per_pixel)));
     }
     const Samples samples = parse_samples(examples::read_text(samples_file), samples_file);
     const petzval::Camera camera =

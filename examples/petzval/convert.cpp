@@ -20,7 +20,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/exports/lens_metadata.hpp"
-#include "petzval/exports/osl_camera.hpp"
+#include "petzval/exports/renderer_cameras.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/io/lens_json.hpp"

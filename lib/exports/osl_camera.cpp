@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/exports/osl_camera.hpp"
+#include "petzval/exports/renderer_cameras.hpp"
 
 #include <algorithm>
 #include <cmath>

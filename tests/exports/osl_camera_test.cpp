@@ -25,7 +25,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/exports/osl_camera.hpp"
+#include "petzval/exports/renderer_cameras.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

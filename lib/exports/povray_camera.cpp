@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "povray_camera.hpp"
+#include "petzval/exports/renderer_cameras.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
 
+#include "core/text.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/lens/lens.hpp"
-#include "support/text.hpp"
 
-namespace examples {
+namespace petzval {
 namespace {
-
-using petzval::Ray;
-using petzval::Vec3;
 
 /// Centre of the black ball, in the frame of POV-Ray: 100 m behind the lens.
 constexpr double dark_z = -1e5;
@@ -31,9 +30,9 @@ struct Samples {
   std::vector<double> weights;
 };
 
-Samples sampled(const petzval::Camera& camera, int first_row, std::uint32_t samples) {
-  const petzval::Film& film = camera.film();
-  const petzval::HostFrame frame(petzval::Host::pbrt, camera.lens(), petzval::FrameOrigin::front_vertex, 1);
+Samples sampled(const Camera& camera, int first_row, std::uint32_t samples) {
+  const Film& film = camera.film();
+  const HostFrame frame(Host::pbrt, camera.lens(), FrameOrigin::front_vertex, 1);
   const auto width = static_cast<std::size_t>(film.columns), count = width * samples;
   std::array<std::vector<double>, 11> columns;
   for (auto& column : columns) column.resize(count);
@@ -46,10 +45,10 @@ Samples sampled(const petzval::Camera& camera, int first_row, std::uint32_t samp
     for (std::size_t i = 0; i < count; ++i) {
       const auto column = static_cast<std::uint32_t>(i / samples), index = static_cast<std::uint32_t>(i % samples);
       const std::uint32_t seed = 0x9E3779B9u * (4 * (static_cast<std::uint32_t>(row) * 0x10000u + column));
-      const auto in_pixel = petzval::owen_sobol(index, seed);
+      const auto in_pixel = owen_sobol(index, seed);
       // Another order of the points, because pupil samples would otherwise depend on film points.
-      const auto other = static_cast<std::uint32_t>(power * petzval::owen_sobol(index, seed + 1).x);
-      const auto pupil = petzval::owen_sobol(other, seed + 2);
+      const auto other = static_cast<std::uint32_t>(power * owen_sobol(index, seed + 1).x);
+      const auto pupil = owen_sobol(other, seed + 2);
       film_x[i] = column + in_pixel.x, film_y[i] = row + in_pixel.y;
       u[i] = pupil.x, v[i] = pupil.y;
     }
@@ -107,18 +106,22 @@ void append_triangle(std::string& text, const Ray<double>& ray) {
 
 }  // namespace
 
-std::string povray_camera(const petzval::Camera& camera, std::uint32_t samples) {
-  const petzval::Film& film = camera.film();
+std::string format_povray_camera(const Camera& camera, int samples_per_pixel) {
+  const Film& film = camera.film();
+  if (std::min({samples_per_pixel, film.columns, film.rows}) < 1) {
+    throw Error("POV-Ray camera: " + std::to_string(samples_per_pixel) + " samples of " + std::to_string(film.columns) +
+                " x " + std::to_string(film.rows) + " pixels; must be 1 or more");
+  }
+  const auto samples = static_cast<std::uint32_t>(samples_per_pixel);
   // Row r of a picture shows row max(r - 1, 0) of the mesh: POV-Ray 3.7.0 subtracts half a row and rounds down
   // (CreateCameraRay() in source/backend/render/tracepixel.cpp).
   Samples all = sampled(camera, std::min(1, film.rows - 1), samples);
   const double scale = drop_by_weight(all);
-  if (!(scale > 0)) throw petzval::Error(camera.lens().name() + ": no ray passes the lens");
+  if (!(scale > 0)) throw Error(camera.lens().name() + ": no ray passes the lens");
   const std::string size = " +W" + std::to_string(film.columns) + " +H" + std::to_string(film.rows);
 
-  std::string text = "// " + comment_text(camera.lens().name()) +
-                     ", a camera for POV-Ray 3.7.\n//\n//   povray scene.pov" + size +
-                     " -A +FE   (this size, without antialiasing)\n//\n";
+  std::string text = "// " + one_line(camera.lens().name()) + ", a camera for POV-Ray 3.7.\n//\n//   povray scene.pov" +
+                     size + " -A +FE   (this size, without antialiasing)\n//\n";
   text +=
       "// Frame: left-handed, mm; origin at the first vertex of the lens, +x right, +y up, view along +z.\n"
       "// Declare petzval_pose before the #include to move the camera: a transform without scale.\n"
@@ -144,4 +147,4 @@ std::string povray_camera(const petzval::Camera& camera, std::uint32_t samples) 
   return text;
 }
 
-}  // namespace examples
+}  // namespace petzval
