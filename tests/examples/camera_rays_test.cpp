@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "../data_lenses.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
@@ -53,7 +52,7 @@ class CameraRays : public Programs {
 };
 
 TEST_F(CameraRays, NumbersEqualTheLibrary) {
-  const petzval::Lens wide_open = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0")));
+  const petzval::Lens wide_open = petzval::testing::data_lens("double_gauss_100mm_f2.0");
   const petzval::Lens lens_f4 = petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000);
   const petzval::Camera camera(lens_f4, {}, {.model = petzval::ModelKind::exact_double});
   const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n",
@@ -70,7 +69,7 @@ TEST_F(CameraRays, NumbersEqualTheLibrary) {
 }
 
 TEST_F(CameraRays, FocusesByTheGivenCriterion) {
-  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2_28deg")));
+  const petzval::Lens whole = petzval::testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const auto criterion : {petzval::FocusCriterion::paraxial, petzval::FocusCriterion::min_rms}) {
     const petzval::Camera camera(petzval::with_focus(whole, 3000, {.criterion = criterion}), {},
                                  {.model = petzval::ModelKind::exact_double});
@@ -83,8 +82,7 @@ TEST_F(CameraRays, FocusesByTheGivenCriterion) {
 
 // Tilting moves the upper edge of the film; its rays equal the rays of a film point at the new position.
 TEST_F(CameraRays, TiltsItsFilm) {
-  const petzval::Lens lens_3m =
-      petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000);
+  const petzval::Lens lens_3m = petzval::with_focus(petzval::testing::data_lens("double_gauss_100mm_f2.0"), 3000);
   const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
   const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
   for (const petzval::ModelKind model : {petzval::ModelKind::thick, petzval::ModelKind::exact_double}) {
@@ -105,8 +103,7 @@ TEST_F(CameraRays, AcceptsIrisAndWeights) {
   std::string csv = header;
   for (int i = 0; i < 64; ++i) csv += "5,-3," + std::to_string(i / 64.) + ",0.9,587.5618\n";
   const petzval::Lens hexagon = petzval::with_focus(
-      petzval::with_iris(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), {.blades = 6}),
-      3000);
+      petzval::with_iris(petzval::testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 6}), 3000);
   const petzval::Camera camera(hexagon, {},
                                {.model = petzval::ModelKind::thin,
                                 .bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5, .weight_distribution = -4}});

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "../data_lenses.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
@@ -50,7 +49,7 @@ class Distances : public Programs {
 
 TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
   const std::string id = "double_gauss_100mm_f2.0";
-  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens(id)));
+  const petzval::Lens whole = petzval::testing::data_lens(id);
   using enum petzval::DistanceOrigin;
   for (const auto origin : {front_vertex, film, entrance_pupil}) {
     const Arguments flags =
@@ -115,7 +114,7 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
   for (const auto& [id, name] : lenses) {
     const auto outcome = run("report", {lens(id), "--json", "--f-number", name});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const double fastest = petzval::fastest_f_number(petzval::compile(petzval::read_prescription(lens(id))));
+    const double fastest = petzval::fastest_f_number(petzval::testing::data_lens(id));
     EXPECT_NEAR(nlohmann::json::parse(outcome.out)["f_number"].get<double>(), fastest, 1e-9) << id;
     EXPECT_NE(outcome.err.find("--f-number = " + name), std::string::npos) << outcome.err;
   }

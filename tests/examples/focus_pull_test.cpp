@@ -2,11 +2,10 @@
 #include <cmath>
 #include <set>
 
+#include "../data_lenses.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/focus/focus_point.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
@@ -87,8 +86,7 @@ TEST_F(FocusPull, CountsDistancesFromTheirOrigin) {
 
 TEST_F(FocusPull, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
-  const petzval::Lens lens =
-      petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
+  const petzval::Lens lens = petzval::with_f_number(petzval::testing::data_lens(id), 4);
   petzval::FocusPoint point;
   point.keys.push_back({1, petzval::ScenePoint{{0, 0, -1000}, false}});
   point.keys.push_back({3, petzval::ScenePoint{{100, 0, -4000}, false}});

@@ -3,10 +3,9 @@
 #include <limits>
 #include <set>
 
+#include "../data_lenses.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {
@@ -28,7 +27,7 @@ double or_infinity(const nlohmann::json& value) { return value.is_null() ? infin
 
 TEST_F(FocusReport, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
-  const petzval::Lens lens = petzval::compile(petzval::read_prescription(Programs::lens(id)));
+  const petzval::Lens lens = petzval::testing::data_lens(id);
   const auto json = rows(
       id, {"--at", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max", "--blur", "0.2", "--from", "film"});
   ASSERT_EQ(json.size(), 12u);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "../data_lenses.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {
@@ -57,7 +56,7 @@ TEST_F(LensMetadata, HasTheFNumberAndTStopOfTheReport) {
 // The files contain the distance from the film, as the formats require, for any origin of distances on the command
 // line.
 TEST_F(LensMetadata, ConvertsDistancesToTheFormat) {
-  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("biogon_35mm_f2.8")));
+  const petzval::Lens whole = petzval::testing::data_lens("biogon_35mm_f2.8");
   const double film_z = petzval::with_focus(whole, 2000).film_z();
   ASSERT_EQ(run("metadata", {lens("biogon_35mm_f2.8"), "--focus", "2000", "--out", path("out")}).status, 0);
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");

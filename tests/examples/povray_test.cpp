@@ -7,12 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "../data_lenses.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "program.hpp"
 
 namespace {
@@ -96,7 +95,7 @@ class Povray : public Programs {
 
 TEST_F(Povray, PictureEqualsPetzvalRender) {
   if (std::system("command -v povray >/dev/null 2>&1") != 0) GTEST_SKIP() << "povray is missing";
-  const petzval::Lens focused = petzval::with_focus(petzval::compile(petzval::read_prescription(lens(lens_id))), 1000);
+  const petzval::Lens focused = petzval::with_focus(petzval::testing::data_lens(lens_id), 1000);
   const petzval::Camera camera(focused, {.columns = columns, .rows = rows});
   render(focused);
   // The whole scene is moved, to test the pose of the camera.

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <map>
 
+#include "../data_lenses.hpp"
 #include "core/text.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 #include "relay_zmx.hpp"
@@ -64,7 +63,7 @@ TEST_F(SpotDiagram, NumbersEqualTheHits) {
 }
 
 TEST_F(SpotDiagram, FocusesTheFilmAtTheDLine) {
-  const petzval::Lens triplet = petzval::compile(petzval::read_prescription(lens("cooke_triplet_50mm_f5")));
+  const petzval::Lens triplet = petzval::testing::data_lens("cooke_triplet_50mm_f5");
   const auto film_z = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--fields", "0", "--wavelengths", "500, d", "--rays", "64"});
     return rows("cooke_triplet_50mm_f5", more)[0]["film_z_mm"].get<double>();

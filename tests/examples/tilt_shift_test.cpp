@@ -3,11 +3,10 @@
 #include <limits>
 #include <set>
 
+#include "../data_lenses.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
@@ -116,8 +115,7 @@ TEST_F(TiltShift, JsonHasTheDocumentedKeys) {
 
 TEST_F(TiltShift, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2_28deg";
-  const petzval::Lens lens =
-      petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
+  const petzval::Lens lens = petzval::with_f_number(petzval::testing::data_lens(id), 4);
   const auto targets = targets_of(table);
   for (const std::string model : {"thin", "thick"}) {
     SCOPED_TRACE(model);

@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
+#include "../data_lenses.hpp"
 #include "program.hpp"
 
 namespace {
@@ -43,7 +42,7 @@ class TraceRays : public Programs {
 };
 
 TEST_F(TraceRays, NumbersEqualTheLibraryToTheBit) {
-  const petzval::Lens lens_f135 = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f1.35")));
+  const petzval::Lens lens_f135 = petzval::testing::data_lens("double_gauss_100mm_f1.35");
   const petzval::Ray<double> ray{{1.1, 20.3, -40}, {0.03125, -0.0625, std::sqrt(1 - 0.0048828125)}};
   std::string csv = header;
   for (const double v : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z}) {

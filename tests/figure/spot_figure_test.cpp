@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <string>
 
+#include "../data_lenses.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {
@@ -22,7 +20,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Indices by the n_d/V_d model: the figure only needs several wavelengths.
 Lens lens_of(const std::string& id, std::span<const double> wavelengths, const std::string& name = {}) {
-  Prescription p = read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
+  Prescription p = testing::data_prescription(id);
   if (!name.empty()) p.name = name;
   for (auto& row : p.surfaces) {
     row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};

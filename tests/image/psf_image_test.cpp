@@ -12,12 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
@@ -33,8 +32,7 @@ double light(const RgbImage& image, double pixel_mm) {
 }
 
 TEST(Render, PixelsSumToTheThroughput) {
-  const Lens lens =
-      compile(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "double_gauss_100mm_f1.35.json"));
+  const Lens lens = testing::data_lens("double_gauss_100mm_f1.35");
   const std::vector<std::array<double, 3>> white{{1, 1, 1}};
   for (const double f_number : {1.4, 4.0}) {
     for (const int pixels : {32, 200}) {
@@ -110,9 +108,7 @@ TEST(SpectralImage, RoundTripsToTheBitByLayoutNames) {
 // As in photographs, the triangle stands on an edge behind the focus and on a corner in front of the focus.
 TEST(Render, IrisIsUprightForLightsBeyondTheFocus) {
   const std::vector<std::array<double, 3>> white{{1, 1, 1}};
-  const Lens lens = with_iris(
-      compile(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "double_gauss_100mm_f2.0.json")),
-      {.blades = 3});
+  const Lens lens = with_iris(testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 3});
   for (const double light_z : {-1e5, -1000.0}) {
     const Lens focused = with_focus(with_f_number(lens, 5.6), 3000);
     const RgbImage picture = render(point_image(focused, {0, light_z}, {.samples = 1 << 16, .pixels = 64}).psf, white);
