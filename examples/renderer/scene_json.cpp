@@ -20,17 +20,16 @@ namespace {
 
 using examples::Json;
 using examples::Range;
-using examples::refuse;
 
 // Embree misses larger objects, and float overflows at larger radiances.
-constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9, "number from 1e-9 to 1e9"},
-    not_negative{0, 1e12, "number from 0 to 1e12"}, unit_range{0, 1, "number from 0 to 1"},
-    rough{0.01, 1, "number from 0.01 to 1"}, index_of_glass{1.001, 4, "number from 1.001 to 4"};
+constexpr Range finite{-1e9, 1e9, "a number from -1e9 to 1e9"}, positive{1e-9, 1e9, "a number from 1e-9 to 1e9"},
+    not_negative{0, 1e12, "a number from 0 to 1e12"}, unit_range{0, 1, "a number from 0 to 1"},
+    rough{0.01, 1, "a number from 0.01 to 1"}, index_of_glass{1.001, 4, "a number from 1.001 to 4"};
 
 std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, const std::filesystem::path& file,
                                                     float most, const char* rule) {
   const std::string ending = file.extension().string();
-  if (ending != ".exr" && ending != ".EXR") refuse(where, file.string(), "an EXR file (.exr)");
+  if (ending != ".exr" && ending != ".EXR") examples::refuse(where, file.string(), "an EXR file (.exr)");
   auto image = std::make_shared<petzval::RgbImage>();
   try {
     *image = petzval::read_exr(file);
@@ -48,37 +47,20 @@ std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, co
 }
 
 /// A JSON value, its path for messages, and the folder of its file.
-struct Entry {
-  std::string where;
-  const Json& json;
+struct Entry : examples::JsonEntry {
   const std::filesystem::path& folder;
 
-  void keys(std::initializer_list<std::string_view> known, const std::string& words) const {
-    examples::check_keys(where, json, known, words);
-  }
-  bool has(const char* key) const { return json.is_object() && json.contains(key); }
   /// The value of an existing key.
-  Entry at(const std::string& key) const { return {where + "." + key, json.at(key), folder}; }
-  Entry at(std::size_t i) const { return {where + "[" + std::to_string(i) + "]", json.at(i), folder}; }
+  Entry at(const std::string& key) const { return {{where + "." + key, json.at(key)}, folder}; }
+  Entry at(std::size_t i) const { return {{where + "[" + std::to_string(i) + "]", json.at(i)}, folder}; }
 
-  float number(const Range& range) const {
-    const bool good = json.is_number() && json.get<double>() >= range.least && json.get<double>() <= range.most;
-    if (!good) refuse(where, json, std::string("a ") + range.words);
-    return json.get<float>();
-  }
   void read(const char* key, float& to, const Range& range) const {
-    if (has(key)) to = at(key).number(range);
+    if (has(key)) to = static_cast<float>(at(key).number(range));
   }
-
   template <class Vector>
   Vector three(const Range& range) const {
-    const auto good = [&](const Json& c) {
-      return c.is_number() && c.get<double>() >= range.least && c.get<double>() <= range.most;
-    };
-    if (!json.is_array() || json.size() != 3 || !std::all_of(json.begin(), json.end(), good)) {
-      refuse(where, json, std::string("a list of three values, each a ") + range.words);
-    }
-    return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+    const auto values = list(3, range, std::string("a list of three values, each ") + range.words);
+    return {values[0], values[1], values[2]};
   }
   template <class Vector>
   void read(const char* key, Vector& to, const Range& range) const {
@@ -86,7 +68,7 @@ struct Entry {
   }
 
   std::filesystem::path path() const {
-    if (!json.is_string()) refuse(where, json, "a file name");
+    if (!json.is_string()) refuse("a file name");
     return folder / json.get<std::string>();
   }
 };
@@ -114,7 +96,7 @@ Albedo albedo(const Entry& entry) {
   }
   entry.keys({"checker", "size_mm", "image"}, "checker and size_mm, or image");
   const std::string_view kind = one_of(entry, {"checker", "image"}, "them");
-  if (kind.empty()) refuse(entry.where, entry.json, "a list of three numbers, or an object with checker or image");
+  if (kind.empty()) entry.refuse("a list of three numbers, or an object with checker or image");
   if (kind == "image") {
     if (entry.has("size_mm"))
       throw petzval::Error(entry.where + ": size_mm must not be used with image, only with checker");
@@ -122,8 +104,7 @@ Albedo albedo(const Entry& entry) {
     return result;
   }
   const Entry checker = entry.at("checker");
-  if (!checker.json.is_array() || checker.json.size() != 2)
-    refuse(checker.where, checker.json, "a list of two colours");
+  if (!checker.json.is_array() || checker.json.size() != 2) checker.refuse("a list of two colours");
   result.colour = checker.at(std::size_t{0}).three<Rgb>(unit_range);
   result.checker = Albedo::Checker{.other = checker.at(std::size_t{1}).three<Rgb>(unit_range)};
   entry.read("size_mm", result.checker->size_mm, positive);
@@ -134,28 +115,28 @@ Material material(const Entry& entry) {
   const std::string words = "diffuse, mirror, rough, glass or varnish";
   entry.keys({"diffuse", "mirror", "rough", "glass", "varnish"}, words);
   const std::string_view kind = one_of(entry, {"diffuse", "mirror", "rough", "glass", "varnish"}, words);
-  if (kind.empty()) refuse(entry.where, entry.json, words);
+  if (kind.empty()) entry.refuse(words);
   const Entry of = entry.at(std::string(kind));
   if (kind == "diffuse") return Diffuse{albedo(of)};
   if (kind == "mirror") return Mirror{of.three<Rgb>(unit_range)};
   if (kind == "rough") {
     Rough result;
-    of.keys({"reflectance", "roughness"}, "reflectance and roughness");
+    of.keys({"reflectance", "roughness"});
     of.read("reflectance", result.reflectance, unit_range);
     of.read("roughness", result.roughness, rough);
     return result;
   }
   if (kind == "glass") {
     Glass result;
-    of.keys({"ior", "roughness"}, "ior and roughness");
+    of.keys({"ior", "roughness"});
     of.read("ior", result.ior, index_of_glass);
     of.read("roughness", result.roughness, unit_range);
     if (result.roughness > 0)
-      of.read("roughness", result.roughness, {rough.least, rough.most, "number from 0.01 to 1, or 0"});
+      of.read("roughness", result.roughness, {rough.least, rough.most, "a number from 0.01 to 1, or 0"});
     return result;
   }
   Varnish result;
-  of.keys({"diffuse", "roughness"}, "diffuse and roughness");
+  of.keys({"diffuse", "roughness"});
   if (of.has("diffuse")) result.albedo = albedo(of.at("diffuse"));
   of.read("roughness", result.roughness, rough);
   return result;
@@ -168,20 +149,20 @@ Shape shape(const Entry& entry) {
   const Entry of = entry.at(std::string(kind));
   if (kind == "sphere") {
     Sphere result;
-    of.keys({"centre_mm", "radius_mm"}, "centre_mm and radius_mm");
+    of.keys({"centre_mm", "radius_mm"});
     of.read("centre_mm", result.centre, finite);
     of.read("radius_mm", result.radius, positive);
     return result;
   }
   if (kind == "quad") {
     Quad result;
-    of.keys({"corner_mm", "edge_u_mm", "edge_v_mm"}, "corner_mm, edge_u_mm and edge_v_mm");
+    of.keys({"corner_mm", "edge_u_mm", "edge_v_mm"});
     of.read("corner_mm", result.corner, finite);
     of.read("edge_u_mm", result.edge_u, finite);
     of.read("edge_v_mm", result.edge_v, finite);
     const glm::dvec3 u = result.edge_u, v = result.edge_v;
     if (!(glm::length(glm::cross(u, v)) > 1e-6 * glm::length(u) * glm::length(v))) {
-      refuse(of.where, of.json, "a quad whose edges span an area");
+      of.refuse("a quad whose edges span an area");
     }
     return result;
   }
@@ -216,7 +197,7 @@ Object object(const Entry& entry) {
 
 Pose pose(const Entry& entry) {
   Pose result;
-  entry.keys({"position_mm", "look_at_mm", "up"}, "position_mm, look_at_mm and up");
+  entry.keys({"position_mm", "look_at_mm", "up"});
   entry.read("position_mm", result.position, finite);
   result.look_at = result.position + glm::dvec3{0, 0, -1};
   entry.read("look_at_mm", result.look_at, finite);
@@ -224,10 +205,10 @@ Pose pose(const Entry& entry) {
   const glm::dvec3 view_direction = result.look_at - result.position;
   const double apart = glm::length(view_direction), up = glm::length(result.up);
   if (!(apart > 1e-9 * glm::length(result.position))) {
-    refuse(entry.where, entry.json, "a pose whose look_at_mm differs from position_mm");
+    entry.refuse("a pose whose look_at_mm differs from position_mm");
   }
   if (!(glm::length(glm::cross(view_direction / apart, result.up)) > 1e-6 * up)) {
-    refuse(entry.where, entry.json, "a pose whose up is not parallel to look_at_mm - position_mm");
+    entry.refuse("a pose whose up is not parallel to look_at_mm - position_mm");
   }
   return result;
 }
@@ -237,8 +218,8 @@ Pose pose(const Entry& entry) {
 SceneDescription read_scene(const std::filesystem::path& file) {
   const Json document = examples::read_json(file);
   const std::filesystem::path folder = file.parent_path();
-  const auto entry = [&](const char* key) { return Entry{file.string() + ": " + key, document.at(key), folder}; };
-  examples::check_keys(file.string(), document, {"sky", "camera", "objects"}, "sky, camera and objects");
+  const auto entry = [&](const char* key) { return Entry{{file.string() + ": " + key, document.at(key)}, folder}; };
+  examples::JsonEntry{file.string(), document}.keys({"sky", "camera", "objects"});
 
   SceneDescription scene{.name = file.string()};
   if (document.contains("sky")) {
@@ -254,7 +235,7 @@ SceneDescription read_scene(const std::filesystem::path& file) {
   if (document.contains("camera")) scene.pose = pose(entry("camera"));
   if (document.contains("objects")) {
     const Entry objects = entry("objects");
-    if (!objects.json.is_array()) refuse(objects.where, objects.json, "a list");
+    if (!objects.json.is_array()) objects.refuse("a list");
     for (std::size_t i = 0; i < objects.json.size(); ++i) scene.objects.push_back(object(objects.at(i)));
   }
   return scene;

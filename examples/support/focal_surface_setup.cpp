@@ -31,10 +31,9 @@ std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& 
   std::vector<petzval::FocalPoint> result;
   for (const Json& json : list) {
     const JsonEntry entry{file + ": point " + std::to_string(result.size() + 1), json};
-    entry.keys({"pixel", "world_mm", "position_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
-               "pixel, world_mm or position_mm, distance_mm, extent_stops, blur_px, weight and fade");
+    entry.keys({"pixel", "world_mm", "position_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"});
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
-    const char* world_key = json.contains("position_mm") ? "position_mm" : "world_mm";
+    const char* world_key = entry.has("position_mm") ? "position_mm" : "world_mm";
     const auto world = entry.numbers<3>(world_key, "three finite numbers, [x, y, z]");
     if (pixel.has_value() == world.has_value()) {
       throw petzval::Error(entry.where + ": has " + (pixel ? "both of" : "neither of") +
@@ -47,19 +46,18 @@ std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& 
       const Vec3<double> position = to_lens({(*world)[0], (*world)[1], (*world)[2]});
       const petzval::Projection seen = camera.project(position);
       if (seen.status == petzval::ProjectionStatus::not_visible) {
-        refuse(entry.where + ": " + world_key, json[world_key],
-               "a point that the camera images on or outside its film");
+        entry.refuse(world_key, "a point that the camera images on or outside its film");
       }
       point.film_point = seen.film;
       point.inverse_distance = 1 / (entrance_z - position.z);
     }
-    if (json.contains("distance_mm") && json["distance_mm"].is_null()) {
+    if (entry.has("distance_mm") && json["distance_mm"].is_null()) {
       point.inverse_distance = 0;
     } else if (const auto distance = entry.number("distance_mm", positive_number)) {
       const double from_pupil = *distance + entrance_z - counted_from;
       if (!(from_pupil > 0)) {
-        refuse(entry.where + ": distance_mm", json["distance_mm"],
-               "more than " + number(counted_from - entrance_z) + ", the distance of the entrance pupil");
+        entry.refuse("distance_mm",
+                     "more than " + number(counted_from - entrance_z) + ", the distance of the entrance pupil");
       }
       point.inverse_distance = 1 / from_pupil;
     }
@@ -68,9 +66,7 @@ std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& 
       throw petzval::Error(entry.where + ": has neither distance_mm nor extent_stops; must have one of them");
     }
     if (const auto blur = entry.number("blur_px", finite_number)) {
-      if (!point.inverse_distance) {
-        refuse(entry.where + ": blur_px", json["blur_px"], "left out if distance_mm is not given");
-      }
+      if (!point.inverse_distance) entry.refuse("blur_px", "left out if distance_mm is not given");
       point.blur_mm = *blur * camera.film().pixel_mm();
     }
     point.weight = entry.number("weight", weight_range).value_or(1);

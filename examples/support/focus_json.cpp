@@ -21,22 +21,19 @@ constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite nu
 /// The JSON of a target, a point or a key.
 struct Entry : JsonEntry {
   const Json& at(const char* key, const std::string& rule) const {
-    if (!json.contains(key)) throw petzval::Error(where + ": " + key + " is missing; must be " + rule);
+    if (!has(key)) throw petzval::Error(where + ": " + key + " is missing; must be " + rule);
     return json.at(key);
-  }
-  double number(const char* key, double unless, const Range& range) const {
-    return JsonEntry::number(key, range).value_or(unless);
   }
   bool flag(const char* key, bool unless) const {
-    if (!json.contains(key)) return unless;
-    if (!json.at(key).is_boolean()) refuse(where + ": " + key, json.at(key), "true or false");
+    if (!has(key)) return unless;
+    if (!json.at(key).is_boolean()) refuse(key, "true or false");
     return json.at(key);
   }
-  std::optional<double> extent() const { return JsonEntry::number("extent_stops", extent_range); }
+  std::optional<double> extent() const { return number("extent_stops", extent_range); }
   petzval::ScenePoint scene_point() const {
     constexpr const char* rule = "three finite numbers, [x, y, z]";
-    const char* key = json.contains("world_mm") ? "world_mm" : "position_mm";
-    if (json.contains("world_mm") && json.contains("position_mm")) {
+    const char* key = has("world_mm") ? "world_mm" : "position_mm";
+    if (has("world_mm") && has("position_mm")) {
       throw petzval::Error(where + ": has both of world_mm and position_mm; must have one of them");
     }
     at(key, rule);
@@ -60,10 +57,10 @@ std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file
   const Json document = points_of(file.string(), read_json(file));
   if (document == Json::array()) return result;
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
-    entry.keys({"position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"},
-               "world_mm or position_mm, weight, blur_mm, at_infinity, extent_stops and fixes_distance");
-    result.push_back({entry.scene_point(), entry.number("blur_mm", 0, finite_number),
-                      entry.number("weight", 1, weight_range), entry.extent(), entry.flag("fixes_distance", true)});
+    entry.keys({"position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"});
+    result.push_back({entry.scene_point(), entry.number("blur_mm", finite_number).value_or(0),
+                      entry.number("weight", weight_range).value_or(1), entry.extent(),
+                      entry.flag("fixes_distance", true)});
   });
   return result;
 }
@@ -72,26 +69,23 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
   std::vector<petzval::FocusPoint> result;
   const Json document = points_of(file.string(), read_json(file));
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
-    entry.keys({"from_s", "until_s", "keys", "fixes_distance"}, "from_s, until_s, keys and fixes_distance");
+    entry.keys({"from_s", "until_s", "keys", "fixes_distance"});
     petzval::FocusPoint point;
     point.fixes_distance = entry.flag("fixes_distance", true);
-    point.from = entry.number("from_s", point.from, finite_number);
-    point.until = entry.number("until_s", point.until, finite_number);
-    if (!(point.until >= point.from)) {
-      refuse(entry.where + ": until_s", entry.json["until_s"], "a time not before from_s");
-    }
+    point.from = entry.number("from_s", finite_number).value_or(point.from);
+    point.until = entry.number("until_s", finite_number).value_or(point.until);
+    if (!(point.until >= point.from)) entry.refuse("until_s", "a time not before from_s");
     for_entries(entry.where + ": keys", entry.at("keys", "a list of keys"), "key", [&](const Entry& key) {
-      key.keys({"time_s", "position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops"},
-               "time_s, world_mm or position_mm, weight, blur_mm, at_infinity and extent_stops");
+      key.keys({"time_s", "position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops"});
       key.at("time_s", finite_number.words);
-      point.keys.push_back({key.number("time_s", 0, finite_number), key.scene_point(),
-                            key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range),
-                            key.extent()});
+      point.keys.push_back({*key.number("time_s", finite_number), key.scene_point(),
+                            key.number("blur_mm", finite_number).value_or(0),
+                            key.number("weight", weight_range).value_or(1), key.extent()});
       if (point.keys.back().extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
         throw petzval::Error(key.where + ": extent_stops must be given in all keys of the point or in no key");
       }
       if (point.keys.size() > 1 && !(point.keys.end()[-2].time < point.keys.back().time)) {
-        refuse(key.where + ": time_s", key.json["time_s"], "a time after the previous key");
+        key.refuse("time_s", "a time after the previous key");
       }
     });
     result.push_back(std::move(point));

@@ -16,28 +16,28 @@ constexpr Range frame_counts{1, 100000, "a whole number from 1 to 100000"};
 
 std::vector<FocusPull::Key> read_keys(const std::string& file, std::string& origin) {
   const Json document = read_json(file);
-  check_keys(file, document, {"distance_from", "keys"}, "keys and distance_from");
+  const JsonEntry all{file, document};
+  all.keys({"distance_from", "keys"});
   origin.clear();
-  if (document.contains("distance_from")) {
+  if (all.has("distance_from")) {
     const std::vector<std::string> known = names(distance_origins);
     const Json& from = document["distance_from"];
     if (!from.is_string() || std::ranges::find(known, from.get<std::string>()) == known.end()) {
-      refuse(file + ": distance_from", from, "a value of --from");
+      all.refuse("distance_from", "a value of --from");
     }
     origin = from.get<std::string>();
   }
-  constexpr const char* rule = "a list of one key or more, each with time_s and distance_mm";
-  if (!document.contains("keys") || !document["keys"].is_array() || document["keys"].empty()) {
-    refuse(file + ": keys", document.value("keys", Json()), rule);
+  if (!all.has("keys") || !document["keys"].is_array() || document["keys"].empty()) {
+    all.refuse("keys", "a list of one key or more, each with time_s and distance_mm");
   }
   std::vector<FocusPull::Key> keys;
   for (const Json& json : document["keys"]) {
     const JsonEntry entry{file + ": key " + std::to_string(keys.size() + 1), json};
     entry.keys({"time_s", "distance_mm"}, "time_s and distance_mm; infinity is null");
     const auto time = entry.number("time_s", finite_number);
-    if (!time || !json.contains("distance_mm")) refuse(entry.where, json, "an object with time_s and distance_mm");
+    if (!time || !entry.has("distance_mm")) entry.refuse("an object with time_s and distance_mm");
     if (!keys.empty() && !(keys.back().time_s < *time)) {
-      refuse(entry.where + ": time_s", json["time_s"], "a time after the previous key");
+      entry.refuse("time_s", "a time after the previous key");
     }
     const bool infinite = json["distance_mm"].is_null();
     keys.push_back({*time, infinite ? 0 : 1 / *entry.number("distance_mm", positive_number)});

@@ -2,7 +2,6 @@
 #include "json_input.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,31 +41,35 @@ Json read_json(const std::filesystem::path& file) {
   }
 }
 
-void check_keys(const std::string& where, const Json& json, std::initializer_list<std::string_view> known,
-                const std::string& words) {
-  if (!json.is_object()) refuse(where, json, "an object with " + words);
+void JsonEntry::keys(std::initializer_list<std::string_view> known, const std::string& given) const {
+  std::string words = given;
+  for (const std::string_view* key = known.begin(); given.empty() && key != known.end(); ++key) {
+    words.append(key == known.begin() ? "" : key + 1 == known.end() ? " and " : ", ").append(*key);
+  }
+  if (!json.is_object()) refuse("an object with " + words);
   for (const auto& [key, value] : json.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw petzval::Error(where + ": unknown key " + Json(key).dump() + "; must be " + words);
   }
 }
 
-std::optional<double> JsonEntry::number(const char* key, const Range& range) const {
-  if (!json.contains(key)) return {};
-  const Json& value = json.at(key);
-  const bool within = value.is_number() && value.get<double>() >= range.least && value.get<double>() <= range.most;
-  if (!within) refuse(where + ": " + key, value, range.words);
-  return value.get<double>();
+double JsonEntry::number(const Range& range) const {
+  const bool within = json.is_number() && json.get<double>() >= range.least && json.get<double>() <= range.most;
+  if (!within) refuse(range.words);
+  return json.get<double>();
 }
 
-std::vector<double> JsonEntry::list(const char* key, std::size_t count, const char* rule) const {
-  if (!json.contains(key)) return {};
-  const Json& value = json.at(key);
-  const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
-  if (!value.is_array() || value.size() != count || !std::all_of(value.begin(), value.end(), finite)) {
-    refuse(where + ": " + key, value, rule);
-  }
-  return value.get<std::vector<double>>();
+std::optional<double> JsonEntry::number(const char* key, const Range& range) const {
+  if (!has(key)) return {};
+  return JsonEntry{where + ": " + key, json.at(key)}.number(range);
+}
+
+std::vector<double> JsonEntry::list(std::size_t count, const Range& range, const std::string& rule) const {
+  const auto within = [&](const Json& value) {
+    return value.is_number() && value.get<double>() >= range.least && value.get<double>() <= range.most;
+  };
+  if (!json.is_array() || json.size() != count || !std::all_of(json.begin(), json.end(), within)) refuse(rule);
+  return json.get<std::vector<double>>();
 }
 
 Json points_of(const std::string& where, const Json& document) {
@@ -74,10 +77,9 @@ Json points_of(const std::string& where, const Json& document) {
   if (document.is_object() && document.contains("keys")) {
     throw petzval::Error(where + ": has distances over time; must be given as --focus " + where);
   }
-  check_keys(where, document, {"points"}, "points, or a list");
-  if (!document.contains("points") || !document["points"].is_array()) {
-    refuse(where + ": points", document.contains("points") ? document["points"] : Json(), "a list of points");
-  }
+  const JsonEntry entry{where, document};
+  entry.keys({"points"}, "points, or a list");
+  if (!entry.has("points") || !document["points"].is_array()) entry.refuse("points", "a list of points");
   return document["points"];
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -23,36 +24,36 @@ namespace examples {
 ///         than 8 levels (no format here needs more, and values are printed and compared recursively)
 Json read_json(const std::filesystem::path& file);
 
-/// @throws petzval::Error unless `json` is an object with no other keys than `known`. words: the keys, for the message
-void check_keys(const std::string& where, const Json& json, std::initializer_list<std::string_view> known,
-                const std::string& words);
-
 /// The points of a file: a list, or an object with the list "points".
 /// @throws petzval::Error  if the document is neither
 Json points_of(const std::string& where, const Json& document);
 
-/// An object of a file and its name in messages. Values are nullopt if the key is missing.
+/// A value of a file and its name in messages. Values of keys are nullopt if the key is missing.
 /// @throws petzval::Error if a value is of the wrong kind
 struct JsonEntry {
   std::string where;
   const Json& json;
 
-  void keys(std::initializer_list<std::string_view> known, const std::string& words) const {
-    check_keys(where, json, known, words);
+  [[noreturn]] void refuse(const std::string& rule) const { examples::refuse(where, json, rule); }
+  [[noreturn]] void refuse(const char* key, const std::string& rule) const {
+    examples::refuse(where + ": " + key, json.value(key, Json()), rule);
   }
+  /// Refuses other values than objects, and unknown keys. words: the keys, for the message; empty: `known`
+  void keys(std::initializer_list<std::string_view> known, const std::string& words = {}) const;
+  bool has(const char* key) const { return json.is_object() && json.contains(key); }
+
+  double number(const Range& range) const;
   std::optional<double> number(const char* key, const Range& range) const;
-  /// A list of `count` finite numbers. rule: the same in words, for messages.
+  /// A list of numbers. rule: the same in words, for messages.
+  std::vector<double> list(std::size_t count, const Range& range, const std::string& rule) const;
   template <std::size_t count>
   std::optional<std::array<double, count>> numbers(const char* key, const char* rule) const {
-    const std::vector<double> found = list(key, count, rule);
-    if (found.empty()) return {};
-    std::array<double, count> result;
-    for (std::size_t i = 0; i < count; ++i) result[i] = found[i];
+    if (!has(key)) return {};
+    const std::vector<double> found = JsonEntry{where + ": " + key, json.at(key)}.list(count, finite_number, rule);
+    std::array<double, count> result{};
+    std::copy(found.begin(), found.end(), result.begin());
     return result;
   }
-
- private:
-  std::vector<double> list(const char* key, std::size_t count, const char* rule) const;
 };
 
 }  // namespace examples

@@ -381,18 +381,15 @@ examples::Json events_of(const Json& log, const std::string& where) {
 }
 
 SessionOptions options_of(const Json& log, const std::string& where) {
-  examples::check_keys(where, log,
-                       {"scene", "image", "depth", "deep", "depth_kind", "depth_unit", "near_mm", "far_mm", "white",
-                        "lens", "setup", "size", "fov_deg", "events"},
-                       "scene, image, depth, deep, depth_kind, depth_unit, near_mm, far_mm, white, lens, setup, size, "
-                       "fov_deg and events");
+  const examples::JsonEntry entry{where, log};
+  entry.keys({"scene", "image", "depth", "deep", "depth_kind", "depth_unit", "near_mm", "far_mm", "white", "lens",
+              "setup", "size", "fov_deg", "events"});
   SessionOptions options;
   for (const auto& [key, member] : texts) {
     if (!log.contains(key)) continue;
-    if (!log[key].is_string()) examples::refuse(where + ": " + key, log[key], "a text");
+    if (!log[key].is_string()) entry.refuse(key, "a text");
     options.input.*member = log[key].get<std::string>();
   }
-  const examples::JsonEntry entry{where, log};
   if (const auto near = entry.number("near_mm", examples::positive_number)) {
     options.input.near_mm = *near;
     options.input.far_mm = std::numeric_limits<double>::infinity();
@@ -403,7 +400,7 @@ SessionOptions options_of(const Json& log, const std::string& where) {
   Json setup = log.value("setup", Json{{"format", "petzval-camera 2"}});
   if (log.contains("lens") && log["lens"].is_object()) {
     const Json& thin = log["lens"];
-    examples::check_keys(where + ": lens", thin, {"thin_mm", "f_number"}, "thin_mm and f_number");
+    examples::JsonEntry{where + ": lens", thin}.keys({"thin_mm", "f_number"});
     setup["lens"] = {{"thin_mm", thin.value("thin_mm", Json())}};
     setup["f_number"] = thin.value("f_number", Json());
   } else if (log.contains("lens")) {
@@ -418,7 +415,7 @@ SessionOptions options_of(const Json& log, const std::string& where) {
   if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]")) {
     for (const double side : *size) {
       if (!(side >= 1 && side <= 16384 && side == std::floor(side))) {
-        examples::refuse(where + ": size", log["size"], "two whole numbers from 1 to 16384");
+        entry.refuse("size", "two whole numbers from 1 to 16384");
       }
     }
     if (options.input.scene.empty()) {
