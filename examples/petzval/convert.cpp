@@ -66,9 +66,16 @@ std::vector<ImportWarning> write_text(const petzval::ExportedLens& written, cons
   return written.losses;
 }
 
-/// Losses of a file that describes the effect of a lens but not its construction.
-std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval::Lens& compiled) {
+/// Writes a file that describes the effect of a lens but not its construction.
+std::vector<ImportWarning> write_effect(const Prescription& lens, const petzval::GlassCatalogue& glasses,
+                                        const Options& options) {
+  const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
   const petzval::Film film = petzval::default_film(compiled, lens.image_diagonal_mm);
+  if (options.out.ends_with(".exr")) {
+    petzval::write_st_map(compiled, film, petzval::identity_of(lens), options.out, {}, examples::threads());
+  } else {
+    petzval::write_open_track_io(compiled, film, petzval::identity_of(lens), options.out);
+  }
   std::vector<ImportWarning> losses{{0, "surfaces",
                                      "are lost; the file has only the effect of the lens on a picture of " +
                                          examples::number(film.width_mm, 4) + " x " +
@@ -79,20 +86,8 @@ std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval
 
 // Longer extensions first: .opentrackio.json also ends in .json.
 constexpr std::array outputs{
-    Output{".opentrackio.json",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
-             const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_open_track_io(compiled, petzval::default_film(compiled, lens.image_diagonal_mm),
-                                          petzval::identity_of(lens), options.out);
-             return only_metadata(lens, compiled);
-           }},
-    Output{".stmap.exr",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
-             const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_st_map(compiled, petzval::default_film(compiled, lens.image_diagonal_mm),
-                                   petzval::identity_of(lens), options.out, {}, examples::threads());
-             return only_metadata(lens, compiled);
-           }},
+    Output{".opentrackio.json", write_effect},
+    Output{".stmap.exr", write_effect},
     Output{".json",
            [](const Prescription& lens, const petzval::GlassCatalogue&, const Options& options) {
              petzval::write_prescription(lens, options.out);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export_table.hpp"
 
-#include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdio>
 #include <sstream>
 #include <string_view>
 
@@ -29,9 +27,7 @@ constexpr std::string_view positions =
 
 /// A float with nine digits, which is read back as the same float.
 std::string text_of(float value) {
-  std::array<char, 32> buffer;
-  std::snprintf(buffer.data(), buffer.size(), "%.9g", static_cast<double>(value));
-  std::string text = buffer.data();
+  std::string text = examples::number(static_cast<double>(value), 9);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
