@@ -213,7 +213,7 @@ int commands::expressive(int argc, char** argv) {
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
-    options.from_lens_given = app.get_option("--from-lens")->given();
+    options.from_lens_given = app.given("--from-lens");
     draw(options);
   });
 }

@@ -10,6 +10,7 @@
 #include "layers/layer_input.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/glass/glass.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
@@ -21,15 +22,17 @@
 
 namespace {
 
-/// Measures the distance in focus from the front vertex, the origin of the editor.
-void focus_from_front(petzval::CameraSetup& setup) {
-  auto& wavelengths = setup.lens.wavelengths_nm;
+/// The set-up of an editor, which measures distances from the front vertex.
+petzval::CameraSetup for_editor(examples::CameraFlags flags) {
+  auto& wavelengths = flags.lens.wavelengths_nm;
   if (wavelengths.empty()) wavelengths = {petzval::d_line_nm};
+  const petzval::Lens compiled = examples::load_lens(flags, wavelengths).lens;
+  petzval::CameraSetup setup = flags.used_with(compiled);
   if (setup.focus_mm && std::isfinite(*setup.focus_mm)) {
-    const petzval::Lens lens = petzval::prepared(setup, examples::load_lens(setup, wavelengths).lens);
-    *setup.focus_mm -= petzval::origin_z(lens, setup.focus.origin);
+    *setup.focus_mm -= petzval::origin_z(petzval::prepared(setup, compiled), setup.focus.origin);
   }
   setup.focus = {};
+  return setup;
 }
 
 }  // namespace
@@ -38,24 +41,19 @@ int commands::view(int argc, char** argv) {
   viewer::WindowOptions window;
   viewer::ReplayOptions replay;
   lens_blur::InputFlags& input = window.session.input;
-  petzval::LensSource lens;
-  std::string setup_file;
-  double thin_mm = 0, f_number = 0;
+  examples::CameraFlags setup;
+  setup.focus_mm.reset();
   examples::App app(
       "Lens blur in a window: click into the picture to focus. --replay computes the same without a window from a log "
       "of events: a state for each event, and DIR/event_0001.png and so on. Events that are refused, or whose state "
       "has no picture, are reported, the others go on, and the exit status is 1.",
       "petzval view");
   lens_blur::add_input(app, input);
-  app.add_option("LENS", lens.file, "shipped lens (petzval lenses) or lens file")
+  examples::add_setup(app, setup);
+  app.add_option("LENS", setup.lens.file, "shipped lens (petzval lenses) or lens file")
       ->default_str("double_gauss_52mm_f1.8");
-  app.add_option(
-         "--setup", setup_file,
-         "set-up of the camera: a report of render, blur or psf, or a file with its setup. Lens, f-number, iris, "
-         "focus, tilt and swing, bokeh and aberrations are used; LENS, --thin-lens and --f-number replace them")
-      ->type_name("REPORT.json");
-  auto* thin = examples::add_thin_lens(app, thin_mm);
-  examples::add_number(app, "--f-number", f_number, examples::positive_number, "f-number of the thin lens, or of LENS")
+  examples::add_thin_lens(app, setup.lens.thin_mm);
+  examples::add_number(app, "--f-number", setup.f_number, examples::positive_number, "f-number of the thin lens, or of LENS")
       ->default_str("LENS: wide open");
   examples::add_number(app, "--fov", window.session.fov_deg, {1e-3, 120, "more than 0 and at most 120"},
                        "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film "
@@ -89,7 +87,7 @@ int commands::view(int argc, char** argv) {
     window.session.threads = examples::threads();
     if (!replay.log_file.empty()) {
       const bool scene_given = !input.scene.empty() || !input.image.empty() || !input.deep.empty();
-      if (scene_given || !lens.file.empty() || thin->given() || !setup_file.empty()) {
+      if (scene_given || app.given("LENS") || app.given("--thin-lens") || app.given("--setup")) {
         throw petzval::Error("--replay: the log names the scene and the lens; must be used without them");
       }
       const examples::Json events = examples::read_json(replay.log_file);
@@ -107,24 +105,13 @@ int commands::view(int argc, char** argv) {
       return;
     }
     if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";
-    petzval::CameraSetup& setup = window.session.setup;
-    if (!setup_file.empty()) {
-      setup = examples::for_flag("--setup",
-                                 [&] { return petzval::camera_setup(examples::read_text(setup_file), setup_file); });
+    petzval::LensSource& lens = setup.lens;
+    if (lens.thin_mm > 0 && !lens.file.empty()) {
+      throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
     }
-    if (thin->given()) {
-      if (!lens.file.empty()) throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
-      if (!(f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
-      setup.lens = {.thin_mm = thin_mm}, setup.f_number = f_number;
-    } else {
-      if (!lens.file.empty() || setup_file.empty()) {
-        setup.lens = {.file = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file};
-      }
-      if (f_number > 0) {
-        window.first_events = {{{"type", "setup"}, {"setup", {{"f_number", f_number}}}}};
-      }
-    }
-    if (!setup_file.empty()) focus_from_front(setup);
+    if (lens.thin_mm > 0 && !setup.f_number) throw petzval::Error("--thin-lens needs --f-number");
+    if (!(lens.thin_mm > 0) && setup.file.empty() && lens.file.empty()) lens.file = "double_gauss_52mm_f1.8";
+    window.session.setup = for_editor(setup);
     if (window.log_file.empty()) window.log_file = "petzval-view.json";
     viewer::show_window(window);
   });

@@ -55,7 +55,9 @@ void add_setup(App& app, CameraFlags& flags) {
            flags.pixels_given = has("/film/columns") && has("/film/rows");
            // Kept for command lines without another lens.
            flags.lens_of_file = std::exchange(flags.lens, {.wavelengths_nm = flags.lens.wavelengths_nm});
-           for (const char* replaced : {"LENS", "--focus"}) app.get_option(replaced)->required(false);
+           for (const char* replaced : {"LENS", "--focus"}) {
+             if (Option* const option = app.get_option(replaced)) option->required(false);
+           }
          },
          "set-up of the camera instead of LENS and flags; a report of render, blur or psf, or a file with its setup. "
          "LENS and the flags that are given replace single values")
@@ -63,11 +65,11 @@ void add_setup(App& app, CameraFlags& flags) {
   app.add_check([&app, &flags] {
     if (flags.file.empty()) return;
     const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + flags.file + ": " + why); };
-    const bool own_lens = !app.get_option("LENS")->given() && flags.lens.thin_mm == 0;
-    if (!own_lens || app.get_option("--focus")->given()) {
+    const bool own_lens = !app.given("LENS") && flags.lens.thin_mm == 0;
+    if (!own_lens || app.given("--focus")) {
       flags.film.z_mm.reset(), flags.focal_surface.default_inverse_distance.reset();
     }
-    if (flags.iris_area == "equal" && !app.get_option("--f-number")->given()) {
+    if (flags.iris_area == "equal" && !app.given("--f-number")) {
       fail("--iris-area = equal needs --f-number: the f-number of a set-up is of the corners");
     }
     if (own_lens) {
@@ -77,7 +79,7 @@ void add_setup(App& app, CameraFlags& flags) {
         fail("lens: file = \"" + lens + "\"; must be an existing file or the name of a shipped lens");
       }
     }
-    if (flags.focus_mm || flags.pull.moves()) return;
+    if (flags.focus_mm || flags.pull.moves() || !app.get_option("--focus")) return;
     fail("focus_mm is missing; must be in the file or given by --focus");
   });
 }

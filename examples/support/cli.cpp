@@ -98,7 +98,14 @@ Option* App::add_option(const std::string& name, const std::function<void(const 
 Option* App::add_flag(const std::string& name, bool& value, const std::string& help) {
   return kept(app_->add_flag(name, value, help));
 }
-Option* App::get_option(const std::string& name) { return kept(app_->get_option(name)); }
+Option* App::get_option(const std::string& name) {
+  CLI::Option* const option = app_->get_option_no_throw(name);
+  return option ? kept(option) : nullptr;
+}
+bool App::given(const std::string& name) const {
+  const CLI::Option* const option = app_->get_option_no_throw(name);
+  return option && option->count() > 0;
+}
 
 void App::want_other_files(const std::string& flag, const std::string& file) const {
   std::error_code error;

@@ -87,7 +87,10 @@ class App {
   Option* add_option(const std::string& name, const std::function<void(const std::string&)>& set,
                      const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
+  /// The option of a name; null if there is none.
   Option* get_option(const std::string& name);
+  /// True if there is an option of this name and the command line has it.
+  bool given(const std::string& name) const;
   /// @throws petzval::Error  if an existing file is the value of an option other than `flag`
   void want_other_files(const std::string& flag, const std::string& file) const;
   /// Adds a check that run() makes before the body.

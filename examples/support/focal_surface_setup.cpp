@@ -89,7 +89,7 @@ void add_surface_kind(App& app, petzval::CameraSetup& setup, Option* points) {
   app.add_check([&app, &setup, points] {
     if (points->given() || !setup.focal_points.empty()) return;
     for (const char* flag : {"--kind", "--beta"}) {
-      if (app.get_option(flag)->given()) throw petzval::Error(std::string(flag) + " needs --points");
+      if (app.given(flag)) throw petzval::Error(std::string(flag) + " needs --points");
     }
   });
 }

@@ -235,12 +235,23 @@ TEST_F(ViewProgram, SavesTheEventsWithoutADisplay) {
   for (const char* const name : {"DISPLAY", "WAYLAND_DISPLAY"}) unsetenv(name);
   const auto outcome = run("view", {"--scene", "town", "--thin-lens", "50", "--f-number", "2", "--size", "80x60",
                                     "--log", path("saved.json")});
+  for (const Arguments& lens : {Arguments{}, {"double_gauss_52mm_f1.8"}}) {  // a log is a file with a set-up
+    Arguments line{"--setup", path("saved.json"), "--f-number", "4", "--size", "80x60", "--log", path("again.json")};
+    line.insert(line.end(), lens.begin(), lens.end());
+    run("view", line);
+    std::filesystem::rename(path("again.json"), path(lens.empty() ? "thin.json" : "real.json"));
+  }
   if (display) setenv("DISPLAY", before.c_str(), 1);
   EXPECT_EQ(outcome.status, 1);
   if (outcome.err.find("without SDL2") != std::string::npos) GTEST_SKIP() << "built without a window";
   EXPECT_NE(outcome.err.find("display"), std::string::npos) << outcome.err;
   const json saved = read_json(path("saved.json"));
   EXPECT_EQ(saved["scene"], "town");
+  for (json wanted = saved["setup"]; const char* const name : {"thin.json", "real.json"}) {
+    wanted["f_number"] = 4;
+    if (name[0] == 'r') wanted["lens"]["thin_mm"] = 0, wanted["lens"]["file"] = "double_gauss_52mm_f1.8";
+    EXPECT_EQ(read_json(path(name))["setup"], wanted);
+  }
   EXPECT_EQ(run("view", {"--replay", path("saved.json")}).status, 0);
 }
 
