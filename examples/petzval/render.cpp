@@ -71,35 +71,47 @@ struct Options {
 
 void say(const fs::path& file) { std::cout << file.string() << '\n'; }
 
+/// The --wavelengths of a lens that is compiled for wavelengths.
+std::string wavelengths_of(const std::vector<double>& nm) {
+  for (const char* const mode : {"d", "rgb"}) {
+    const renderer::PathColourSource colours(*renderer::colour_mode_named(mode));
+    if (nm.empty() || std::ranges::is_permutation(colours.compiled_nm(), nm)) return mode;
+  }
+  const bool one = nm.size() == 1 || (nm.size() == 2 && nm.back() == petzval::d_line_nm);
+  return one ? examples::number(nm.front()) : "hero";
+}
+
+petzval::CameraSetup setup_of(const Json& job) { return petzval::camera_setup(job.at("setup").dump(), "job"); }
+
 /// Writes picture.*, render.json and tiles.json. job: all inputs of the numbers; about: entries of render.json.
 void write_results(const renderer::PictureSums& sums, Json job, const Json& about,
                    const std::vector<std::string>& formats, const fs::path& folder, double exposure = 1) {
-  const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
-                                                 {"lensModel", job.at("lens")},
-                                                 {"model", job.at("model")},
-                                                 {"integrator", job.at("integrator")},
-                                                 {"wavelengths", job.at("wavelengths")},
-                                                 {"normalisation", job.at("normalisation")},
-                                                 {"distanceFrom", job.at("distance_from")},
-                                                 {"petzval", job.at("petzval")}};
-  const auto number = [&](const char* key) {
-    return job.at(key).is_null() ? std::numeric_limits<double>::infinity() : job.at(key).get<double>();
-  };
-  const std::map<std::string, double> numbers{{"fNumber", number("real_f_number")},
-                                              {"aperture", number("real_f_number")},
-                                              {"focus", number("focus_mm") / 1000},  // m
-                                              {"focusMm", number("focus_mm")},
-                                              {"white", number("white")},
-                                              {"seed", number("seed")}};
-  const auto white = static_cast<float>(exposure / number("white"));
+  const petzval::CameraSetup setup = setup_of(job);
+  const std::map<std::string, std::string> texts{
+      {"lens", job.at("lens")},
+      {"lensModel", job.at("lens")},
+      {"model", std::string(petzval::name(setup.camera.model))},
+      {"integrator", job.at("integrator")},
+      {"wavelengths", wavelengths_of(setup.lens.wavelengths_nm)},
+      {"normalisation", std::string(petzval::name(setup.camera.normalisation))},
+      {"distanceFrom", std::string(petzval::name(setup.focus.origin))},
+      {"petzval", job.at("petzval")}};
+  const std::map<std::string, double> numbers{{"fNumber", job.at("real_f_number")},
+                                              {"aperture", job.at("real_f_number")},
+                                              {"focus", *setup.focus_mm / 1000},  // m
+                                              {"focusMm", *setup.focus_mm},
+                                              {"white", job.at("white")},
+                                              {"seed", job.at("seed")}};
+  const double white_level = job.at("white");
+  const auto white = static_cast<float>(exposure / white_level);
   for (const fs::path& file : renderer::write_pictures(sums, texts, numbers, formats, folder, white)) {
     say(file);
   }
   if (sums.rejected() > 0) {
     std::cerr << "note: " << sums.rejected() << " contributions were rejected: not finite, or beyond 2^40\n";
   }
-  Json report{{"setup", job.value("setup", Json())}},
-      numbers_of_sums = renderer::statistics(sums, noise_floor * number("white"));
+  Json report{{"setup", job.at("setup")}},
+      numbers_of_sums = renderer::statistics(sums, noise_floor * white_level);
   examples::write_text(folder / "tiles.json", numbers_of_sums["tiles"].dump() + '\n');
   numbers_of_sums.erase("tiles"), job.erase("setup");
   report.update(about), report.update(numbers_of_sums);
@@ -216,15 +228,6 @@ class Job {
 
   petzval::ModelKind model() const noexcept { return chosen_.model; }
 
-  /// The --wavelengths of a lens that is compiled for wavelengths.
-  static std::string wavelengths_of(const std::vector<double>& nm) {
-    for (const char* const mode : {"d", "rgb"}) {
-      if (nm.empty() || std::ranges::is_permutation(colours_named(mode).compiled_nm(), nm)) return mode;
-    }
-    const bool one = nm.size() == 1 || (nm.size() == 2 && nm.back() == petzval::d_line_nm);
-    return one ? examples::number(nm.front()) : "hero";
-  }
-
  private:
   static renderer::PathColourSource colours_named(const std::string& text) {
     if (const auto mode = renderer::colour_mode_named(text)) return renderer::PathColourSource(*mode);
@@ -331,10 +334,8 @@ class Job {
     if (options_.resume && examples::exists(file)) {
       Json job;
       renderer::Checkpoint::read_any(file, job);
-      const std::string before = job.value("model", "");
-      if (const auto model = petzval::model_named(before)) {
-        return {*model, {before + " was chosen at the start of the picture"}};
-      }
+      const petzval::ModelKind before = setup_of(job).camera.model;
+      return {before, {std::string(petzval::name(before)) + " was chosen at the start of the picture"}};
     }
     if (options_.budget_px == 0 && options_.samples == 0) {
       throw petzval::Error("--model auto with --time needs --budget or --spp for the choice");
@@ -357,64 +358,19 @@ class Job {
     }
   }
 
-  /// The --coatings of the picture; "setup": a coating of --setup without a name.
-  std::string coatings_used() const {
-    if (!options_.coatings.empty() || !setup_.camera.transmission) return options_.coatings;
-    if (!setup_.coating) return "file";
-    for (const char* name : {"none", "mgf2"}) {
-      if (setup_.coating == examples::coating_named(name)) return name;
-    }
-    return "setup";
-  }
   Json description_of_numbers(const petzval::Camera& camera) const {
     double white = 1;
     if (setup_.camera.normalisation == petzval::Normalisation::irradiance) white = irradiance_on_axis(camera);
-    const petzval::BokehControls& bokeh = setup_.camera.bokeh;
     std::string glasses;
     for (const std::string& file : setup_.lens.glass_files) glasses += file_checksum(file);
     return {{"scene", renderer::checksum(scene_.description())},
             {"lens", lens_.name()},
             {"prescription", petzval::checksum(petzval::format_prescription(loaded_.prescription))},
-            {"model", petzval::name(chosen_.model)},
-            {"integrator", options_.integrator},
-            {"wavelengths", options_.wavelengths == "visible" ? "hero" : options_.wavelengths},
-            {"normalisation", petzval::name(setup_.camera.normalisation)},
             {"glasses", glasses},
-            {"coatings", coatings_used()},
-            {"coating_file", options_.coatings.ends_with(".csv") ? file_checksum(options_.coatings) : ""},
+            {"iris_map", file_checksum(setup_.iris_map)},
+            {"integrator", options_.integrator},
             {"white", white},
-            {"width", setup_.film.columns},
-            {"height", setup_.film.rows},
-            {"film_mm", examples::number(setup_.film.width_mm) + "x" + examples::number(setup_.film.height_mm)},
-            {"tilt_deg", examples::exact_degrees(setup_.film.tilt_rad)},
-            {"swing_deg", examples::exact_degrees(setup_.film.swing_rad)},
-            {"focus_mm", examples::finite_or_null(*setup_.focus_mm)},
-            {"distance_from", petzval::name(setup_.focus.origin)},
-            {"criterion", petzval::name(setup_.focus.criterion)},
-            {"f_number", options_.setup.f_number.value_or(0)},
             {"real_f_number", petzval::real_f_number(lens_)},
-            {"iris",
-             {{"blades", setup_.iris.blades},
-              {"roundness", setup_.iris.roundness},
-              {"rotation_deg", examples::exact_degrees(setup_.iris.rotation_rad)},
-              {"area", options_.setup.iris_area},
-              {"image", file_checksum(examples::iris_image(setup_))}}},
-            {"bokeh",
-             {{"lens_ratio", bokeh.lens_ratio},
-              {"rate_of_change", bokeh.rate_of_change},
-              {"keep_light", bokeh.keep_light},
-              {"weight_distribution", bokeh.weight_distribution},
-              {"weight_strength", bokeh.weight_strength},
-              {"weight_map", file_checksum(examples::weight_map(setup_))}}},
-            {"focal_surface",
-             {{"points", file_checksum(options_.setup.points_file)},
-              {"kind", petzval::name(setup_.focal_surface.kind)},
-              {"beta", setup_.focal_surface.beta}}},
-            {"expressive",
-             {{"power_spline", options_.expressive.power_spline},
-              {"curvature_points", options_.expressive.curvature_points},
-              {"dispersion", options_.expressive.dispersion},
-              {"from_lens", options_.expressive.from_lens}}},
             {"seed", options_.seed},
             {"sequence", "16 rounds of Owen-Sobol points"},
             {"noise", options_.noise > 0 ? Json(options_.noise) : Json()},
@@ -473,7 +429,7 @@ int merge(int argc, char** argv) {
     Json job;
     const renderer::PictureSums sums = renderer::gather({folders.begin(), folders.end()}, job);
     examples::make_folder(out_folder);
-    write_results(sums, job, {{"model", job.at("model")}, {"why", Json::array({"merged from shards"})}}, formats,
+    write_results(sums, job, {{"model", petzval::name(setup_of(job).camera.model)}, {"why", Json::array({"merged from shards"})}}, formats,
                   out_folder);
   });
 }
@@ -583,7 +539,7 @@ int commands::render(int argc, char** argv) {
   examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
-    if (options.wavelengths.empty()) options.wavelengths = Job::wavelengths_of(options.setup.lens.wavelengths_nm);
+    if (options.wavelengths.empty()) options.wavelengths = wavelengths_of(options.setup.lens.wavelengths_nm);
     if (options.samples == 0 && options.noise > 0) options.samples = 4096;
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);

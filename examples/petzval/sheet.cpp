@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -19,6 +20,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "renderer/highlights.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
@@ -33,59 +35,41 @@ namespace fs = std::filesystem;
 using examples::Json;
 using examples::number;
 
-/// A picture of petzval render, or a picture file without a job.
+/// A picture of petzval render, or a picture file without a set-up.
 struct Picture {
   fs::path path;
   petzval::RgbImage image;
-  Json job;
+  std::optional<petzval::CameraSetup> setup;
+  std::string lens;  ///< its name; empty for a picture file
 
-  bool rendered() const { return !job.is_null(); }
-  bool own_exposure() const { return !rendered() && path.extension() == ".exr"; }
+  double film_width_mm() const { return setup ? setup->film.width_mm : 0; }
+  bool own_exposure() const { return !setup && path.extension() == ".exr"; }
   /// The name of the file; or the focus, and differences from an upright film behind the unmodified lens.
   std::vector<std::string> captions() const {
-    if (!rendered()) return {path.filename().string()};
-    const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
-    std::string from = job.at("distance_from");
-    std::replace(from.begin(), from.end(), '_', ' ');
-    const bool surface = !job.at("focal_surface").at("points").get<std::string>().empty();
-    std::vector<std::string> lines{surface        ? "a focal surface"
-                                   : mm.is_null() ? "focus infinity"
-                                                  : "focus " + number(mm.get<double>()) + " mm from the " + from};
-    const bool bent = !expressive.at("power_spline").empty() || !expressive.at("curvature_points").empty() ||
-                      expressive.at("dispersion") != 1 || expressive.at("from_lens") != 0;
-    if (job.at("tilt_deg") != 0 || job.at("swing_deg") != 0) lines.emplace_back("film tilted");
-    if (bent) lines.emplace_back("expressive lens");
+    if (!setup) return {path.filename().string()};
+    const double mm = setup->focus_mm.value();
+    std::vector<std::string> lines{!setup->focal_points.empty() ? "a focal surface"
+                                   : std::isinf(mm)             ? "focus infinity"
+                                                                : "focus " + number(mm) + " mm from the " +
+                                                          examples::in_words(setup->focus.origin)};
+    if (setup->film.tilted()) lines.emplace_back("film tilted");
+    if (!setup->camera.expressive.empty()) lines.emplace_back("expressive lens");
     return lines;
-  }
-  /// Name of the lens; empty for a picture file.
-  std::string lens() const {
-    if (!rendered()) return {};
-    return job.at("lens").get<std::string>() + (job.at("model") == "pinhole" ? ", pinhole" : "");
   }
 };
 
 Picture read(const fs::path& path) {
   std::error_code none;
   if (!fs::is_directory(path, none)) {
-    if (path.extension() == ".png") return {path, petzval::read_png(path), {}};
-    if (path.extension() == ".exr") return {path, petzval::read_exr(path), {}};
+    if (path.extension() == ".png") return {path, petzval::read_png(path), {}, {}};
+    if (path.extension() == ".exr") return {path, petzval::read_exr(path), {}, {}};
     throw petzval::Error(path.string() + ": must be a folder of petzval render, or a picture in .png or .exr");
   }
-  Picture picture{path, petzval::read_exr(path / "picture.exr"), {}};
-  try {
-    picture.job = Json::parse(examples::read_text(path / "render.json")).at("job");
-    picture.captions(), picture.lens();
-  } catch (const Json::exception&) {
-    throw petzval::Error((path / "render.json").string() + ": not a file of petzval render");
-  }
+  const std::string file = (path / "render.json").string(), text = examples::read_text(file);
+  Picture picture{path, petzval::read_exr(path / "picture.exr"), petzval::camera_setup(text, file), {}};
+  picture.lens = Json::parse(text).at("job").at("lens");
+  if (picture.setup->camera.model == petzval::ModelKind::pinhole) picture.lens += ", pinhole";
   return picture;
-}
-
-/// The size of the film across; 0 for a picture file.
-double film_width_mm(const Picture& picture) {
-  if (!picture.rendered()) return 0;
-  const std::string film = picture.job.at("film_mm");
-  return examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
 }
 
 /// The exposure that clips one pixel of 5000.
@@ -111,15 +95,16 @@ examples::Sheet sheet_of(std::span<const Picture> pictures, const std::string& t
   std::string row_title;
   for (std::size_t i = 0; i < pictures.size(); i += columns) {
     const auto shown_pictures = pictures.subspan(i, std::min(columns, pictures.size() - i));
-    const bool same_lens = std::ranges::all_of(
-        shown_pictures, [&](const Picture& p) { return p.lens() == shown_pictures.front().lens(); });
-    const std::string lens = same_lens ? shown_pictures.front().lens() : "";
+    const bool same_lens =
+        std::ranges::all_of(shown_pictures, [&](const Picture& p) { return p.lens == shown_pictures.front().lens; });
+    const std::string lens = same_lens ? shown_pictures.front().lens : "";
     examples::SheetRow& row = sheet.rows.emplace_back(examples::SheetRow{
         same_lens && lens == row_title ? "" : lens, same_lens ? "" : "lenses below the pictures", {}, columns});
     row_title = lens;
     for (const Picture& p : shown_pictures) {
-      row.tiles.push_back({shown(p, own_exposure), p.captions(), film_width_mm(p)});
-      if (!same_lens && p.rendered()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
+      row.tiles.push_back({shown(p, own_exposure), p.captions(), p.film_width_mm()});
+      if (!same_lens && p.setup.has_value())
+        row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens);
     }
   }
   return sheet;
@@ -142,11 +127,10 @@ void add_highlights(examples::Sheet& sheet, const std::vector<Picture>& pictures
     for (const Picture& p : pictures) {
       const auto highlights = renderer::ball_highlights(p.image);
       if (highlights.size() <= ball || !highlights[ball]) continue;
-      const Json& mm = p.job.at("focus_mm");
       const petzval::RgbImage part = square_at(p.image, highlights[ball]->x);
       row.tiles.push_back({petzval::to_srgb8(part, exposure_below_white(p.image)),
-                           {examples::focus_caption(mm.is_null() ? INFINITY : mm.get<double>())},
-                           film_width_mm(p) / p.image.width * part.width});
+                           {examples::focus_caption(*p.setup->focus_mm)},
+                           p.film_width_mm() / p.image.width * part.width});
     }
     if (!row.tiles.empty()) sheet.rows.push_back(std::move(row));
   }
@@ -161,8 +145,8 @@ std::string ball_table(const std::vector<Picture>& pictures) {
     for (std::size_t i = 0; i < highlights.size(); ++i) {
       if (!highlights[i]) continue;
       const renderer::Highlight& h = *highlights[i];
-      csv +=
-          '"' + p.lens() + "\"," + p.job.at("focus_mm").dump() + ',' + std::to_string(25 * (static_cast<int>(i) - 6));
+      csv += '"' + p.lens + "\"," + examples::finite_or_null(*p.setup->focus_mm).dump() + ',' +
+             std::to_string(25 * (static_cast<int>(i) - 6));
       for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light, h.neighbour_light})
         csv += ',' + number(x, 4);
       csv += h.trusted() ? ",yes\n" : ",no\n";
@@ -199,9 +183,9 @@ int commands::sheet(int argc, char** argv) {
     bool rendered = false, exr = false;
     for (const std::string& path : paths) {
       const Picture& p = pictures.emplace_back(read(path));
-      if (!balls.empty() && !p.rendered())
+      if (!balls.empty() && !p.setup.has_value())
         throw petzval::Error("--balls: " + path + " is a file; must be a folder of petzval render");
-      rendered |= p.rendered(), exr |= p.own_exposure();
+      rendered |= p.setup.has_value(), exr |= p.own_exposure();
     }
     examples::Sheet sheet = sheet_of(pictures, title, columns, !balls.empty());
     if (rendered) {

@@ -209,17 +209,17 @@ TEST_F(BokehScene, PixelsAreSquareByDefault) {
     all.insert(all.end(), more.begin(), more.end());
     const Outcome outcome = run("render", all);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const json job = read_json(path(out) + "/render.json")["job"];
-    return std::tuple(job["film_mm"].get<std::string>(), job["width"].get<int>(), job["height"].get<int>(),
-                      outcome.err);
+    const json film = read_json(path(out) + "/render.json")["setup"]["film"];
+    return std::tuple(film["width_mm"].get<double>(), film["height_mm"].get<double>(), film["columns"].get<int>(),
+                      film["rows"].get<int>(), outcome.err);
   };
-  EXPECT_EQ(shape("wide", {"--size", "96x54"}), std::tuple("36x20.25", 96, 54, ""));
-  EXPECT_EQ(shape("tall", {"--size", "48x96"}), std::tuple("18x36", 48, 96, ""));
-  EXPECT_EQ(shape("square", {"--size", "48x48"}), std::tuple("24x24", 48, 48, ""));
-  EXPECT_EQ(shape("usual", {"--size", "90"}), std::tuple("36x24", 90, 60, ""));
-  EXPECT_EQ(shape("film", {"--size", "96", "--film", "24x9"}), std::tuple("24x9", 96, 36, ""));
-  const auto [film, width, height, note] = shape("egg", {"--size", "96x54", "--film", "36x24"});
-  EXPECT_EQ(film, "36x24");
+  EXPECT_EQ(shape("wide", {"--size", "96x54"}), std::tuple(36, 20.25, 96, 54, ""));
+  EXPECT_EQ(shape("tall", {"--size", "48x96"}), std::tuple(18, 36, 48, 96, ""));
+  EXPECT_EQ(shape("square", {"--size", "48x48"}), std::tuple(24, 24, 48, 48, ""));
+  EXPECT_EQ(shape("usual", {"--size", "90"}), std::tuple(36, 24, 90, 60, ""));
+  EXPECT_EQ(shape("film", {"--size", "96", "--film", "24x9"}), std::tuple(24, 9, 96, 36, ""));
+  const auto [width, height, columns, rows, note] = shape("egg", {"--size", "96x54", "--film", "36x24"});
+  EXPECT_EQ(std::pair(width, height), std::pair(36.0, 24.0));
   for (const char* flag : {"--film", "--size"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
 }
 
@@ -351,7 +351,7 @@ TEST_F(BokehScene, FocusPull_FramesEqualStills) {
   for (const auto& [frame, distance] : {std::pair{"1", "1m"}, {"2", "2m"}, {"3", "inf"}}) {
     const json still = render("still", with({"--focus", distance}));
     const std::string of_frame = path(std::string("pull/frame_000") + frame);
-    EXPECT_EQ(read_json(of_frame + "/render.json")["job"], still["job"]);
+    for (const char* key : {"setup", "job"}) EXPECT_EQ(read_json(of_frame + "/render.json")[key], still[key]);
     EXPECT_EQ(petzval::read_exr_parts(of_frame + "/picture.exr").front().channels.front().values,
               petzval::read_exr_parts(path("still/picture.exr")).front().channels.front().values);
     std::filesystem::remove_all(path("still"));

@@ -141,14 +141,6 @@ TEST_F(Setup, ShardsOfFilesInOtherFoldersAreMergedAndResumed) {
   }
 }
 
-TEST_F(Setup, CoatingOfASetupIsInTheJob) {
-  for (const char* coatings : {"none", "mgf2"}) {
-    report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--coatings", coatings}, coatings);
-    const json again = report("render", {"--setup", path(std::string(coatings) + ".json")}, "again");
-    EXPECT_EQ(again["job"]["coatings"], coatings);
-  }
-}
-
 TEST_F(Setup, PsfUsesASetupAndStatesWhatItUsed) {
   const auto with = [](const Arguments& more) {
     Arguments all{"LENS", "--focus", "1m", "--size", "24x16", "--model", "thick", "--film", "24x16"};
