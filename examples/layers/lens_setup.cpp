@@ -19,7 +19,6 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "renderer/lens_camera.hpp"
 #include "support/camera_setup.hpp"
-#include "support/focus_json.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -110,13 +109,9 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
       ->default_str("d");
   add_iris(app, flags.setup);
   add_bokeh(app, flags.setup);
-  auto* points =
-      app.add_option(
-             "--points", flags.setup.points_file,
-             "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys. A "
-             "real lens is replaced by its thick lens")
-          ->type_name("POINTS.json");
-  add_surface_kind(app, flags.setup, points);
+  examples::add_focal_surface(app, flags.setup,
+                              "focal surface: the distances in focus at points of the picture; with --frames, focus "
+                              "points with keys, in the lens frame. A real lens is replaced by its thick lens");
   add_expressive(app, flags.expressive);
 }
 

@@ -14,7 +14,7 @@
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/expressive_flags.hpp"
-#include "support/focal_surface_setup.hpp"
+#include "support/focus_points.hpp"
 #include "support/focus_pull.hpp"
 #include "support/load_lens.hpp"
 

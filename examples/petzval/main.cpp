@@ -52,14 +52,17 @@ void print_overview(std::ostream& out) {
 
 void print_files() {
   std::cout << R"(Points (--points FILE): a JSON list of objects, or an object with the list "points".
-  world_mm [x, y, z]   position in the scene (mm; also called position_mm); tilt: in the lens frame
-  pixel [x, y]         position in the picture, with distance_mm (surface, render, blur)
-  weight               0 or more; 1 if left out
-  blur_mm or blur_px   requested diameter of the blur; negative in front of the plane of focus
-  extent_stops         extent of the depth of field, in stops
+  position_mm [x, y, z]  position in the scene (also called world_mm); tilt, surface, pull: in the lens frame
+  at_infinity            true: position_mm is a direction
+  pixel [x, y]           position in the picture, instead of position_mm (surface, render, blur)
+  distance_mm            distance in focus (surface, render, blur); null: infinity
+  weight                 0 or more; 1 if left out
+  blur_mm or blur_px     requested diameter of the blur; negative in front of the plane of focus
+  extent_stops           extent of the depth of field, in stops; with fixes_distance false, only the extent
+  fade                   0 (no influence) to 1 (surface, render, blur)
 
-Keys (--keys FILE): a list of points with from_s, until_s and "keys", a list of objects with time_s and
-  the names above.
+Keys (pull --keys FILE, blur --frames N --points FILE): points with from_s, until_s and "keys", a list of objects
+  with time_s and the names above. A point without keys does not move.
 
 Events (view --replay FILE): an object with scene (or image, depth, deep), lens, size, fov_deg and events, a list
   of objects with type: add_point, move_point, set_point, remove_point, serve, focus, f_number, iris, bokeh,

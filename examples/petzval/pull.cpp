@@ -23,7 +23,7 @@
 #include "petzval/focus/focus_point.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
-#include "support/focus_json.hpp"
+#include "support/focus_points.hpp"
 #include "support/focus_pull.hpp"
 #include "support/movement_setup.hpp"
 #include "support/text.hpp"
@@ -238,9 +238,7 @@ int commands::pull(int argc, char** argv) {
   Options options;
   examples::App app(
       "Moves the film to focus on scene points with keyframes, frame by frame.\n"
-      "keys.json: [{\"from_s\": 0, \"until_s\": 10, \"keys\": [{\"time_s\": 0, \"position_mm\": [x, y, z], \"weight\": "
-      "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point is "
-      "used within its interval.\n"
+      "Points are in the lens frame, the scene at negative z; a point is used within its interval.\n"
       "The film starts at the focus for infinity. It does not move in a frame without points (no_targets), with points "
       "out of reach (unreachable) or without a solution (not_converged). subject_distance_mm: distance in focus on the "
       "axis.\n"
@@ -248,7 +246,9 @@ int commands::pull(int argc, char** argv) {
       "for 'petzval blur LENS --focus FILE' and 'petzval render LENS --focus FILE'.",
       "petzval pull");
   examples::add_movement_options(app, options);
-  app.add_option("--keys", options.keys_file, "JSON file of points and keys")->type_name("FILE")->required();
+  app.add_option("--keys", options.keys_file, "JSON file of points and keys (petzval help files: format)")
+      ->type_name("FILE")
+      ->required();
   examples::add_out_folder(app, options.out_folder, "folder for the table and the plot")->required();
   examples::add_distance_origin(app, options.focus.origin);
   const auto* criterion = examples::add_criterion(app, options.focus.criterion, {"min_rms", "min_max"});

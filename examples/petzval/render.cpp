@@ -41,7 +41,7 @@
 #include "support/cli.hpp"
 #include "support/expressive_flags.hpp"
 #include "support/files.hpp"
-#include "support/focal_surface_setup.hpp"
+#include "support/focus_points.hpp"
 #include "support/interrupt.hpp"
 #include "support/lens_light.hpp"
 #include "support/load_lens.hpp"
@@ -110,8 +110,7 @@ void write_results(const renderer::PictureSums& sums, Json job, const Json& abou
   if (sums.rejected() > 0) {
     std::cerr << "note: " << sums.rejected() << " contributions were rejected: not finite, or beyond 2^40\n";
   }
-  Json report{{"setup", job.at("setup")}},
-      numbers_of_sums = renderer::statistics(sums, noise_floor * white_level);
+  Json report{{"setup", job.at("setup")}}, numbers_of_sums = renderer::statistics(sums, noise_floor * white_level);
   examples::write_text(folder / "tiles.json", numbers_of_sums["tiles"].dump() + '\n');
   numbers_of_sums.erase("tiles"), job.erase("setup");
   report.update(about), report.update(numbers_of_sums);
@@ -429,8 +428,9 @@ int merge(int argc, char** argv) {
     Json job;
     const renderer::PictureSums sums = renderer::gather({folders.begin(), folders.end()}, job);
     examples::make_folder(out_folder);
-    write_results(sums, job, {{"model", petzval::name(setup_of(job).camera.model)}, {"why", Json::array({"merged from shards"})}}, formats,
-                  out_folder);
+    write_results(sums, job,
+                  {{"model", petzval::name(setup_of(job).camera.model)}, {"why", Json::array({"merged from shards"})}},
+                  formats, out_folder);
   });
 }
 
@@ -502,12 +502,9 @@ int commands::render(int argc, char** argv) {
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup, "each is written as with one --focus, to DIR/frame_0001 and so on");
   examples::add_bokeh(app, options.setup);
-  auto* points = app.add_option("--points", options.setup.points_file,
-                                "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
-                                "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
-                                "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
-                     ->type_name("POINTS.json");
-  examples::add_surface_kind(app, options.setup, points);
+  examples::add_focal_surface(app, options.setup,
+                              "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
+                              "first-order --model");
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_angle(app, "--tilt", options.setup.film.tilt_rad, below_quarter_turn,

@@ -27,7 +27,7 @@
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
-#include "support/focal_surface_setup.hpp"
+#include "support/focus_points.hpp"
 #include "support/load_lens.hpp"
 #include "support/map_sheet.hpp"
 #include "support/number_csv.hpp"
@@ -228,17 +228,12 @@ int commands::surface(int argc, char** argv) {
       "the focus. Points that fix a distance override --focus.",
       "petzval surface");
   examples::add_lens(app, options.setup.lens);
-  auto* points =
-      app.add_option(
-             "--points", options.setup.points_file,
-             "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "
-             "\"blur_px\", \"weight\", \"fade\"}]}; pixels from the upper left corner, centres at halves; the world "
-             "is the lens frame, with the scene at negative z; distance_mm null: infinity")
-          ->required()
-          ->type_name("POINTS.json");
+  examples::add_focal_surface(app, options.setup,
+                              "focus points; pixels from the upper left corner, centres at halves; positions in the "
+                              "lens frame, with the scene at negative z")
+      ->required();
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
-  examples::add_surface_kind(app, options.setup, points);
   app.add_option("--table", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);

@@ -25,7 +25,7 @@
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
-#include "support/focus_json.hpp"
+#include "support/focus_points.hpp"
 #include "support/map_sheet.hpp"
 #include "support/movement_setup.hpp"
 #include "support/text.hpp"
@@ -386,16 +386,18 @@ int commands::tilt(int argc, char** argv) {
   examples::App app(
       "Tilts and swings the film so that scene points are sharp or have a given blur, by least squares of their "
       "blurs.\n"
-      "points.json: [{\"position_mm\": [x, y, z], \"weight\": 1, \"blur_mm\": 0, \"at_infinity\": false}, ...] in the "
-      "lens frame, the scene at negative z; at infinity the position is a direction. Blurs are signed diameters on the "
-      "film: negative nearer than the plane of focus, positive beyond it.\n"
+      "Points are in the lens frame, the scene at negative z; at infinity the position is a direction. Blurs are "
+      "signed "
+      "diameters on the film: negative nearer than the plane of focus, positive beyond it.\n"
       "predicted: by the fitted model; traced: by 4096 exact rays per point (fewer for more than 1024 points), for "
       "every model if LENS is given. Plane and lines of the real model follow from its cardinal points. If the points "
       "do not determine a plane, the result has the smallest tilt, and status is least_tilt.\n"
       "Writes NAME_side.svg, NAME_before.svg and NAME_after.svg into DIR.",
       "petzval tilt");
   examples::add_movement_options(app, options);
-  app.add_option("--points", options.points_file, "JSON file of points to focus on")->type_name("FILE")->required();
+  app.add_option("--points", options.points_file, "JSON file of points to focus on (petzval help files: format)")
+      ->type_name("FILE")
+      ->required();
   examples::add_out_folder(app, options.out_folder, "folder for the pictures")->required();
   constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
   examples::add_number(app, "--max-tilt", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");

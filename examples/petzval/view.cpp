@@ -53,7 +53,8 @@ int commands::view(int argc, char** argv) {
   app.add_option("LENS", setup.lens.file, "shipped lens (petzval lenses) or lens file")
       ->default_str("double_gauss_52mm_f1.8");
   examples::add_thin_lens(app, setup.lens.thin_mm);
-  examples::add_number(app, "--f-number", setup.f_number, examples::positive_number, "f-number of the thin lens, or of LENS")
+  examples::add_number(app, "--f-number", setup.f_number, examples::positive_number,
+                       "f-number of the thin lens, or of LENS")
       ->default_str("LENS: wide open");
   examples::add_number(app, "--fov", window.session.fov_deg, {1e-3, 120, "more than 0 and at most 120"},
                        "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film "

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "files.hpp"
+#include "focus_points.hpp"
 #include "json_input.hpp"
 #include "petzval/core/error.hpp"
 #include "text.hpp"
@@ -13,37 +14,6 @@ namespace examples {
 namespace {
 
 constexpr Range frame_counts{1, 100000, "a whole number from 1 to 100000"};
-
-std::vector<FocusPull::Key> read_keys(const std::string& file, std::string& origin) {
-  const Json document = read_json(file);
-  const JsonEntry all{file, document};
-  all.keys({"distance_from", "keys"});
-  origin.clear();
-  if (all.has("distance_from")) {
-    const std::vector<std::string> known = names(distance_origins);
-    const Json& from = document["distance_from"];
-    if (!from.is_string() || std::ranges::find(known, from.get<std::string>()) == known.end()) {
-      all.refuse("distance_from", "a value of --from");
-    }
-    origin = from.get<std::string>();
-  }
-  if (!all.has("keys") || !document["keys"].is_array() || document["keys"].empty()) {
-    all.refuse("keys", "a list of one key or more, each with time_s and distance_mm");
-  }
-  std::vector<FocusPull::Key> keys;
-  for (const Json& json : document["keys"]) {
-    const JsonEntry entry{file + ": key " + std::to_string(keys.size() + 1), json};
-    entry.keys({"time_s", "distance_mm"}, "time_s and distance_mm; infinity is null");
-    const auto time = entry.number("time_s", finite_number);
-    if (!time || !entry.has("distance_mm")) entry.refuse("an object with time_s and distance_mm");
-    if (!keys.empty() && !(keys.back().time_s < *time)) {
-      entry.refuse("time_s", "a time after the previous key");
-    }
-    const bool infinite = json["distance_mm"].is_null();
-    keys.push_back({*time, infinite ? 0 : 1 / *entry.number("distance_mm", positive_number)});
-  }
-  return keys;
-}
 
 }  // namespace
 
@@ -87,7 +57,7 @@ void add_focus_pull(App& app, FocusPull& pull, std::optional<double>& focus_mm, 
          [&](const std::string& text) {
            pull.text = text, pull.keys.clear();
            if (text.ends_with(".json")) {
-             pull.keys = read_keys(text, pull.origin);
+             pull.keys = read_distances(text, pull.origin);
              focus_mm = 1 / pull.keys.front().inverse_mm;
              return;
            }

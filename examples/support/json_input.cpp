@@ -72,15 +72,10 @@ std::vector<double> JsonEntry::list(std::size_t count, const Range& range, const
   return json.get<std::vector<double>>();
 }
 
-Json points_of(const std::string& where, const Json& document) {
-  if (document.is_array()) return document;
-  if (document.is_object() && document.contains("keys")) {
-    throw petzval::Error(where + ": has distances over time; must be given as --focus " + where);
-  }
-  const JsonEntry entry{where, document};
-  entry.keys({"points"}, "points, or a list");
-  if (!entry.has("points") || !document["points"].is_array()) entry.refuse("points", "a list of points");
-  return document["points"];
+bool JsonEntry::flag(const char* key, bool unless) const {
+  if (!has(key)) return unless;
+  if (!json.at(key).is_boolean()) refuse(key, "true or false");
+  return json.at(key);
 }
 
 }  // namespace examples

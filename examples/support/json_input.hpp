@@ -24,10 +24,6 @@ namespace examples {
 ///         than 8 levels (no format here needs more, and values are printed and compared recursively)
 Json read_json(const std::filesystem::path& file);
 
-/// The points of a file: a list, or an object with the list "points".
-/// @throws petzval::Error  if the document is neither
-Json points_of(const std::string& where, const Json& document);
-
 /// A value of a file and its name in messages. Values of keys are nullopt if the key is missing.
 /// @throws petzval::Error if a value is of the wrong kind
 struct JsonEntry {
@@ -44,6 +40,7 @@ struct JsonEntry {
 
   double number(const Range& range) const;
   std::optional<double> number(const char* key, const Range& range) const;
+  bool flag(const char* key, bool unless) const;
   /// A list of numbers. rule: the same in words, for messages.
   std::vector<double> list(std::size_t count, const Range& range, const std::string& rule) const;
   template <std::size_t count>
