@@ -119,7 +119,7 @@ petzval::ExrPart read_depths(const InputFlags& flags) {
 
 }  // namespace
 
-void add_input(examples::App& app, InputFlags& flags) {
+void add_input(examples::App& app, InputFlags& flags, double& fov_deg, std::uint32_t& layers) {
   app.add_option("--scene", flags.scene, "built-in scene to blur")
       ->one_of({"town", "miniature", "lights", "statues", "knot", "leaves", "street"});
   auto* image =
@@ -155,6 +155,12 @@ void add_input(examples::App& app, InputFlags& flags) {
       ->default_str("far; near for --depth-kind inverse")
       ->needs(near);
   examples::add_picture_size(app, flags.width, flags.height, 800);
+  add_number(
+      app, "--fov", fov_deg, {1e-3, 120, "more than 0 and at most 120"},
+      "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film 24 mm high")
+      ->default_str("");
+  add_count(app, "--layers", layers, {1, 64, "a whole number from 1 to 64"},
+            "largest number of surfaces behind each other");
 }
 
 LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind != "distance") {

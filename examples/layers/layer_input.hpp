@@ -21,7 +21,8 @@ struct InputFlags {
   std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the size of the file
 };
 
-void add_input(examples::App& app, InputFlags& flags);
+/// Adds the options of the source, --fov and --layers.
+void add_input(examples::App& app, InputFlags& flags, double& fov_deg, std::uint32_t& layers);
 
 /// Source of layers: a scene or files.
 class LayerInput {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <sstream>
 #include <utility>
 
 #include "petzval/analysis/colour.hpp"
@@ -30,14 +31,9 @@ using petzval::Error;
 
 /// A singlet from "R1,R2,thickness,glass" with the stop on its first surface.
 petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCatalogue& glasses) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
   if (parts.size() != 4) throw Error("--singlet = \"" + text + "\"; must be R1,R2,thickness,glass");
   const auto radius = [&](std::size_t i) {
     return examples::parse_number("--singlet", parts[i], examples::finite_number);
@@ -65,10 +61,6 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help) {
-  app.add_check([&flags] {
-    petzval::LensSource& of_file = flags.setup.lens_of_file;
-    if (!flags.singlet.empty()) of_file = {.wavelengths_nm = of_file.wavelengths_nm};
-  });
   examples::add_setup(app, flags.setup);
   examples::add_thin_lens(app, flags.setup.lens.thin_mm);
   examples::add_lens(app, flags.setup.lens, "LENS", "traced by exact rays");
@@ -77,16 +69,7 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
       ->type_name("R1,R2,THICKNESS,GLASS");
   examples::add_focus_pull(app, flags.setup.pull, flags.setup.focus_mm, frames_help);
   examples::add_focus(app, flags.setup.focus);
-  constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
-  add_number(
-      app, "--fov", flags.fov_deg, angle,
-      "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film 24 mm high")
-      ->default_str("");
-  constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
-  examples::add_angle(app, "--tilt", flags.setup.film.tilt_rad, tilt,
-                      "tilt of the film about the horizontal axis (degrees)");
-  examples::add_angle(app, "--swing", flags.setup.film.swing_rad, tilt,
-                      "swing of the film about the vertical axis (degrees)");
+  examples::add_tilt(app, flags.setup, {-60, 60, "a number from -60 to 60"});
   app.add_option(
          "--rays",
          [&flags](const std::string& text) {
@@ -112,7 +95,7 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
   examples::add_focal_surface(app, flags.setup,
                               "focal surface: the distances in focus at points of the picture; with --frames, focus "
                               "points with keys, in the lens frame. A real lens is replaced by its thick lens");
-  add_expressive(app, flags.expressive);
+  add_expressive(app, flags.setup);
 }
 
 namespace {
@@ -157,15 +140,13 @@ LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double 
   const petzval::Lens lens =
       examples::for_flag("--focus", [&] { return petzval::with_focus(unfocused, focus_mm, setup.focus); });
   LensView view{.lens = lens,
-                .thin_diameter_mm = thin_mm > 0 ? thin_mm / *setup.f_number : 0,
-                .film = setup.film,
+                .setup = setup,
                 .vertical_angle_rad = angle_rad,
                 .coloured = flags.coloured(),
-                .controls = controls_of(setup),
-                .expressive = setup.camera.expressive,
-                .first_order_only = !setup.file.empty() && setup.camera.model.is_first_order(),
-                .paraxial_focus = setup.camera.paraxial_focus};
-  petzval::Film& film = view.film;
+                .first_order_only = !setup.file.empty() && setup.camera.model.is_first_order()};
+  view.setup.coating.reset();
+  view.setup.camera = {.bokeh = controls_of(setup), .paraxial_focus = setup.camera.paraxial_focus};
+  petzval::Film& film = view.setup.film;
   if (film_height_mm > 0) film.height_mm = film_height_mm;
   if (film_height_mm == 0 && angle_rad > 0) film.height_mm = petzval::film_height_for_angle(lens, angle_rad);
   if (thin_mm > 0 && angle_rad == 0) {
@@ -177,7 +158,7 @@ LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double 
   film.z_mm = film.z_mm.value_or(lens.film_z());
   // Depths of layers count from the entrance pupil.
   view.focus_depth_mm = focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, setup.focus.origin);
-  if (!flags.expressive.change_nothing()) view.expressive = expressive_of(flags.expressive, lens, film);
+  view.setup.camera.expressive = expressive_of(setup, lens, film);
   return view;
 }
 
@@ -201,7 +182,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     pattern_.rays = view_.thin() ? 256 : 512;
     pattern_.jitter = flags.jitter || !view_.thin();
   }
-  if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.film);
+  if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.setup.film);
   if (keyed_ && !flags.setup.points_file.empty()) points_ = examples::read_focus_points(flags.setup.points_file);
   view_.surface = surface_at(0);
   if (model() == petzval::ModelKind::thick && !view_.first_order_only) {
@@ -213,7 +194,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
 double BlurLens::focal_length_mm() const { return petzval::first_order(view_.lens).effective_focal_length; }
 
 void BlurLens::focus_at(double focus_mm, bool keep_film) {
-  const petzval::Film film = view_.film;
+  const petzval::Film film = view_.setup.film;
   view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, view_.vertical_angle_rad,
                   keep_film ? film.height_mm : 0);
   view_.surface = surface_at(0);
@@ -221,31 +202,27 @@ void BlurLens::focus_at(double focus_mm, bool keep_film) {
 }
 
 petzval::CameraSetup BlurLens::setup() const {
-  petzval::CameraSetup result = flags_.setup;
-  const std::optional<double> z_mm = result.film.z_mm;
-  result.film = view_.film, result.film.z_mm = z_mm;
-  result.coating.reset();
-  result.camera = {.model = model(),
-                   .normalisation = petzval::Normalisation::unity_on_axis,
-                   .bokeh = view_.controls,
-                   .expressive = view_.expressive,
-                   .paraxial_focus = view_.thin() || view_.paraxial_focus};
+  petzval::CameraSetup result = view_.setup;
+  result.film.z_mm = flags_.setup.film.z_mm;
+  result.camera.model = model(), result.camera.normalisation = petzval::Normalisation::unity_on_axis;
+  result.camera.paraxial_focus = view_.thin() || result.camera.paraxial_focus;
   return result;
 }
 
 std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
-  examples::CameraFlags& setup = flags_.setup;
-  if (setup.points_file.empty() && setup.focal_points.empty()) return {};
+  const std::string& file = flags_.setup.points_file;
+  petzval::CameraSetup& setup = view_.setup;
+  if (file.empty() && setup.focal_points.empty()) return {};
   const petzval::Camera plain = view_.camera();
-  if (!keyed_ && !setup.points_file.empty()) {
+  if (!keyed_ && !file.empty()) {
     const renderer::LensCamera in_world(plain, pose_);
-    return examples::read_focal_surface(setup.points_file, setup, plain,
+    return examples::read_focal_surface(file, setup, plain,
                                         [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); });
   }
   const petzval::IdealLens ideal = petzval::thick_lens(plain.lens());
   if (!points_.empty()) {
-    std::vector<petzval::FocalPoint> seen =
-        petzval::focal_points(ideal, view_.film, points_, {.time = time, .film = view_.film});
+    const petzval::FocusTime moment{.time = time, .film = setup.film};
+    std::vector<petzval::FocalPoint> seen = petzval::focal_points(ideal, setup.film, points_, moment);
     if (seen.empty()) return view_.surface;  // keep the previous surface
     setup.focal_points = std::move(seen);
   }

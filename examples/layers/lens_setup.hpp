@@ -13,7 +13,6 @@
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
-#include "support/expressive_flags.hpp"
 #include "support/focus_points.hpp"
 #include "support/focus_pull.hpp"
 #include "support/load_lens.hpp"
@@ -32,7 +31,6 @@ struct LensFlags {
   bool over_pixels = false;       ///< as RayPattern
   std::string wavelengths;        ///< "d" or "rgb"; empty: as in --setup, else "d"
   bool jitter = false;
-  examples::ExpressiveFlags expressive;
 
   bool thin() const noexcept { return setup.lens.thin_mm > 0; }
   /// True if the colours have rays of their own.

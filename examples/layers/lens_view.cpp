@@ -12,24 +12,21 @@
 namespace lens_blur {
 
 petzval::ModelKind LensView::model() const noexcept {
-  const bool first_order = surface || !expressive.empty() || first_order_only;
+  const bool first_order = surface || !setup.camera.expressive.empty() || first_order_only;
   return thin() ? petzval::ModelKind::thin : first_order ? petzval::ModelKind::thick : petzval::ModelKind::exact_float;
 }
 
 petzval::Camera LensView::camera() const {
   if (made) return made();
-  return petzval::Camera(lens, film,
-                         {.model = model(),
-                          .normalisation = petzval::Normalisation::unity_on_axis,
-                          .bokeh = controls,
-                          .focal_surface = surface,
-                          .expressive = expressive,
-                          .paraxial_focus = thin() || paraxial_focus});
+  petzval::CameraOptions options = setup.camera;
+  options.model = model(), options.normalisation = petzval::Normalisation::unity_on_axis;
+  options.focal_surface = surface, options.paraxial_focus = thin() || options.paraxial_focus;
+  return petzval::Camera(lens, setup.film, options);
 }
 
 std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const petzval::LayerCamera& layers) const {
   const double power = 1 / petzval::first_order(lens).effective_focal_length, image = power - 1 / focus_depth_mm;
-  return [=, normal = film.normal()](const petzval::Vec2<double>& raster) {
+  return [=, normal = setup.film.normal()](const petzval::Vec2<double>& raster) {
     const petzval::Vec2<double> run = (raster - layers.axis) / layers.focal_px;
     return power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z);
   };
@@ -37,6 +34,7 @@ std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const p
 
 /// The picture of a tilted film keeps the frame of the upright film, on which a focal surface states the focus.
 petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers) const {
+  const petzval::Film& film = setup.film;
   if (!thin() || !film.tilted() || (surface && surface->fixes_distance())) return camera();
   petzval::Film upright = film;
   upright.tilt_rad = upright.swing_rad = 0, upright.columns = layers.columns, upright.rows = layers.rows;
@@ -48,8 +46,8 @@ petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers) con
         {.film_point = upright.point(raster.x, raster.y), .inverse_distance = std::max(0.0, inverse_distance(raster))});
   }
   LensView sharp = *this;
-  sharp.film = upright;
-  sharp.film.columns = film.columns, sharp.film.rows = film.rows;
+  sharp.setup.film = upright;
+  sharp.setup.film.columns = film.columns, sharp.setup.film.rows = film.rows;
   sharp.surface.emplace(petzval::thick_lens(lens), upright, points);
   sharp.made = {};
   return sharp.camera();
@@ -57,7 +55,7 @@ petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers) con
 
 petzval::LayerCamera LensView::layers(std::uint32_t supersample) const {
   const auto side = static_cast<int>(supersample);
-  if (thin()) return petzval::layer_camera(film.columns * side, film.rows * side, vertical_angle_rad);
+  if (thin()) return petzval::layer_camera(setup.film.columns * side, setup.film.rows * side, vertical_angle_rad);
   petzval::LayerCamera layers = petzval::layer_camera(camera());
   layers.columns *= side, layers.rows *= side, layers.focal_px *= side, layers.axis *= side;
   return layers;
@@ -75,13 +73,14 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
                                          .over_pixels = pattern.over_pixels,
                                          .threads = threads,
                                          .stop = stop};
-  if (!thin() || controls.vignettes() || !expressive.empty()) {
+  const petzval::BokehControls& controls = setup.camera.bokeh;
+  if (!thin() || controls.vignettes() || !setup.camera.expressive.empty()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
     return petzval::LensRays::of(sharp_at_focus(layers), layers, points, wavelengths, options);
   }
 
-  petzval::ThinLens thin_lens{.radius_mm = thin_diameter_mm / 2,
+  petzval::ThinLens thin_lens{.radius_mm = thin_radius_mm(),
                               .inverse_focus = 1 / focus_depth_mm,
                               .iris = lens.iris(),
                               .edge = controls.edge(),
@@ -92,13 +91,13 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
         1 / petzval::first_order(lens, static_cast<std::size_t>(c + 1)).effective_focal_length - power;
   }
   if (surface) {
-    petzval::Film fine = film;
+    petzval::Film fine = setup.film;
     fine.columns = layers.columns, fine.rows = layers.rows;
     thin_lens.focus = [surface = *surface, fine](const petzval::Vec2<double>& raster) {
       const petzval::FocalSurface::Values at = surface.at(fine.point(raster.x, raster.y));
       return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
     };
-  } else if (film.tilted()) {
+  } else if (setup.film.tilted()) {
     thin_lens.focus = [inverse_distance = thin_focus(layers)](const petzval::Vec2<double>& raster) {
       return petzval::FocusAt{inverse_distance(raster), 1};
     };

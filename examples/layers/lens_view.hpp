@@ -9,9 +9,8 @@
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/core/film.hpp"
+#include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace lens_blur {
@@ -27,20 +26,17 @@ struct RayPattern {
 /// A lens in front of layers: the rays of `petzval blur` and `petzval view`.
 struct LensView {
   petzval::Lens lens;  ///< focused; for a thin lens thin_elements(). Colours: red, green, blue after the primary
-  double thin_diameter_mm = 0;    ///< of a thin lens; 0: a real lens
-  petzval::Film film = {};        ///< with its size and the pixels of the picture
-  double vertical_angle_rad = 0;  ///< of the picture, for a thin lens
-  double focus_depth_mm = 0;      ///< distance in focus on the axis from the entrance pupil
-  bool coloured = false;          ///< rays of their own for red, green and blue
-  petzval::BokehControls controls = {};
+  petzval::CameraSetup setup = {};  ///< with the size and the pixels of the film; camera.model is not used
+  double vertical_angle_rad = 0;    ///< vertical angle of the picture, for a thin lens
+  double focus_depth_mm = 0;        ///< distance in focus on the axis from the entrance pupil
+  bool coloured = false;            ///< rays of their own for red, green and blue
   std::optional<petzval::FocalSurface> surface = {};
-  petzval::ExpressiveLens expressive = {};
   bool first_order_only = false;  ///< a preview of a real lens
-  bool paraxial_focus = false;    ///< as CameraOptions; always of a thin lens
   /// Returns the camera of this lens, film and options; empty: camera() makes the camera.
   std::function<const petzval::Camera&()> made = {};
 
-  bool thin() const noexcept { return thin_diameter_mm > 0; }
+  bool thin() const noexcept { return setup.lens.thin_mm > 0; }
+  double thin_radius_mm() const { return setup.lens.thin_mm / *setup.f_number / 2; }
   petzval::ModelKind model() const noexcept;
   petzval::Camera camera() const;
   /// The camera of the layers, without overscan.

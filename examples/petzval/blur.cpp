@@ -55,10 +55,6 @@ constexpr std::size_t most_shown = 8;
 
 constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// The middle of a picture, at most 320 x 240 pixels.
 RgbImage middle_of(const RgbImage& picture) {
   RgbImage middle(std::min(picture.width, 320), std::min(picture.height, 240));
@@ -161,18 +157,18 @@ class Job {
     auto start = std::chrono::steady_clock::now();
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
     const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_, time);
-    const double rays_ms = ms_since(start);
+    const double rays_ms = examples::ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
     const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
 
     start = std::chrono::steady_clock::now();
     input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
-    const double n_buffer_ms = 1e3 * layers_.n_buffer_seconds(), peel_ms = ms_since(start) - n_buffer_ms;
+    const double n_buffer_ms = 1e3 * layers_.n_buffer_seconds(), peel_ms = examples::ms_since(start) - n_buffer_ms;
     const double threshold =
         options_.highlights_above < 0 ? lens_blur::threshold_of(layers_, !input_.scene()) : options_.highlights_above;
     start = std::chrono::steady_clock::now();
     petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
-    const double gather_ms = ms_since(start);
+    const double gather_ms = examples::ms_since(start);
     nearest_mm_ = std::numeric_limits<double>::infinity();  // later errors have other reasons
     const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     write(picture, folder / ("blur" + number));
@@ -252,7 +248,7 @@ class Job {
       const auto start = std::chrono::steady_clock::now();
       petzval::gather(layers_, rays,
                       {.threads = threads_, .highlights_above = result_["highlights_above"].get<double>()}, blurred_);
-      ms = ms_since(start);
+      ms = examples::ms_since(start);
       return lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     };
     const RgbImage most = picture(options_.compare_rays);
@@ -293,7 +289,7 @@ class Job {
   void compare(const petzval::LensRays& rays, const RgbImage& picture, Json& json) {
     const auto start = std::chrono::steady_clock::now();
     const RgbImage reference = lens_blur::averaged(input_.scene()->reference(rays, threads_), side_);
-    json["reference_ms"] = ms_since(start);
+    json["reference_ms"] = examples::ms_since(start);
     // Both trace the same number of rays.
     const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.statistics.rays); };
     json["ns_per_ray"] = ns_per_ray(json["total_ms"].get<double>());
@@ -361,12 +357,10 @@ int commands::blur(int argc, char** argv) {
       "sharp.* (the picture of a pinhole), missed.* (the fraction of rays that hit surfaces outside the layers) and "
       "blur.json; with --compare also reference.*, the same rays traced through the scene.",
       "petzval blur");
-  lens_blur::add_input(app, options.input);
+  lens_blur::add_input(app, options.input, options.lens.fov_deg, options.layers);
   lens_blur::add_lens(app, options.lens,
                       "written as blur_0001.* and so on, and up to 8 of them side by side in frames.svg; --points then "
                       "gives focus points with keys");
-  constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
-  examples::add_count(app, "--layers", options.layers, layers, "largest number of surfaces behind each other");
   app.add_flag("--compare", options.compare,
                "compare the picture of a scene with the same rays traced through the scene");
   examples::add_count(app, "--compare-rays", options.compare_rays, {1, 1 << 20, "a whole number from 1 to 1048576"},

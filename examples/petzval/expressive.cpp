@@ -24,7 +24,6 @@
 #include "support/bokeh.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
-#include "support/expressive_flags.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/svg_page.hpp"
@@ -42,15 +41,13 @@ struct Options {
   std::string out_folder, model = "thin_two_disc";
   std::vector<double> light_mm;  // if empty: one nearer and one farther than the focus
   examples::CameraFlags setup;
-  examples::ExpressiveFlags expressive;
-  bool from_lens_given = false;
   std::uint32_t samples = 1u << 17;
   examples::Output output;
 };
 
 /// One wavelength, or a set over the visible range if the dispersion is changed.
 std::vector<double> wavelengths_nm(const Options& options) {
-  if (options.expressive.dispersion == 1) return {petzval::d_line_nm};
+  if (options.setup.camera.expressive.dispersion.empty()) return {petzval::d_line_nm};
   std::vector<double> set;
   for (int nm = 430; nm <= 670; nm += 20) set.push_back(nm);
   return set;
@@ -127,15 +124,11 @@ Json description(const petzval::ExpressiveLens& expressive) {
           {"dispersion", expressive.dispersion.empty() ? 1 : expressive.dispersion.front()}};
 }
 
-void draw(Options options) {
+void draw(const Options& options) {
   const examples::LoadedLens loaded = examples::load_lens(options.setup.lens, wavelengths_nm(options));
-  if (options.expressive.change_nothing() && !options.from_lens_given) {
-    options.expressive.from_lens = 1;
-    examples::note("no aberrations are given; the aberrations of the lens are used (--from-lens 1)");
-  }
   const petzval::Lens lens = examples::focused(loaded, options.setup);
   const petzval::Film& film = options.setup.film;
-  const petzval::ExpressiveLens expressive = examples::expressive_of(options.expressive, lens, film);
+  const petzval::ExpressiveLens expressive = examples::expressive_of(options.setup, lens, film);
   const petzval::ModelKind model = *petzval::model_named(options.model);
   const petzval::Camera bent(lens, film, {.model = model, .expressive = expressive});
 
@@ -202,7 +195,7 @@ int commands::expressive(int argc, char** argv) {
       "petzval expressive");
   examples::add_lens(app, options.setup.lens);
   examples::add_camera(app, options.setup);
-  examples::add_expressive(app, options.expressive);
+  examples::add_expressive(app, options.setup);
   app.add_option("--model", options.model, "first-order model that gets the aberrations")
       ->one_of({"thin", "thick", "thin_two_disc"})
       ->capture_default_str();
@@ -213,7 +206,9 @@ int commands::expressive(int argc, char** argv) {
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
-    options.from_lens_given = app.given("--from-lens");
+    const bool usual = options.setup.camera.expressive.empty() && !app.given("--from-lens");
+    if (usual) options.setup.from_lens = 1;
     draw(options);
+    if (usual) examples::note("no aberrations are given; the aberrations of the lens are used (--from-lens 1)");
   });
 }

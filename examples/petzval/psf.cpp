@@ -47,7 +47,7 @@ struct Options {
   std::vector<std::string> lenses;
   std::string out_folder, white_point = "D65";
   examples::CameraFlags setup;  ///< `lenses` has the names of its lens file
-  std::vector<double> focus_mm, fields_deg{0}, wavelengths_nm{petzval::d_line_nm};
+  std::vector<double> focus_mm, fields_deg{0};
   double subject_mm = 0, tolerance = 0, width_mm = 0, exposure = 1;
   bool diffraction = false;
   std::uint32_t samples = 1u << 21;
@@ -185,11 +185,11 @@ Json to_json(std::span<const Picture> pictures, const Subject& subject, const Op
             {"weight_distribution", controls.weight_distribution},
             {"weight_strength", controls.weight_strength},
             {"keep_light", controls.keep_light},
-            {"iris_image", examples::iris_image(options.setup)},
-            {"weight_map", examples::weight_map(options.setup)},
+            {"iris_image", controls.weight_map.keep_mean ? "" : options.setup.iris_map},
+            {"weight_map", controls.weight_map.keep_mean ? options.setup.iris_map : ""},
             {"weights_add_light", controls.edge().light_added()},
             {"dispersion", petzval::name(loaded.lens.dispersion())},
-            {"wavelengths_nm", options.wavelengths_nm},
+            {"wavelengths_nm", options.setup.lens.wavelengths_nm},
             {"white_point", options.white_point},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", petzval::name(options.setup.focus.origin)},
@@ -205,9 +205,8 @@ Json to_json(std::span<const Picture> pictures, const Subject& subject, const Op
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     const double airy_radius = petzval::airy_radius(p.scene.lens);
     const petzval::Iris& iris = p.scene.lens.iris();
-    const double iris_area = examples::iris_image(options.setup).empty()
-                                 ? petzval::iris_area(iris)
-                                 : petzval::iris_area(iris, controls.weight_map);
+    const bool image = !options.setup.iris_map.empty() && !controls.weight_map.keep_mean;
+    const double iris_area = image ? petzval::iris_area(iris, controls.weight_map) : petzval::iris_area(iris);
     json["results"].push_back(
         {{"field_deg", p.field_deg},
          {"focus_mm", finite_or_null(p.focus_mm)},
@@ -324,6 +323,7 @@ int commands::psf(int argc, char** argv) {
       "(587.5618 nm).",
       "petzval psf");
   options.setup.camera.model = petzval::ModelKind::exact_double;
+  options.setup.lens.wavelengths_nm = {petzval::d_line_nm};
   examples::add_setup(app, options.setup);
   examples::add_lenses(app, options.setup.lens, options.lenses);
   examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
@@ -335,7 +335,7 @@ int commands::psf(int argc, char** argv) {
       ->required();
   examples::add_focus(app, options.setup.focus);
   const auto* const wavelengths = examples::add_wavelengths(
-      app, "--wavelengths", options.wavelengths_nm,
+      app, "--wavelengths", options.setup.lens.wavelengths_nm,
       "wavelengths of the light; several, from 420 to 680 nm, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
   const auto* const model = examples::add_model(app, options.setup.camera.model);
@@ -380,25 +380,24 @@ int commands::psf(int argc, char** argv) {
     }
     petzval::LensSource& source = options.setup.lens;
     if (options.focus_mm.empty()) options.focus_mm = {*options.setup.focus_mm};
-    if (!wavelengths->given() && !source.wavelengths_nm.empty()) {
-      options.wavelengths_nm = source.wavelengths_nm;
-      std::ranges::sort(options.wavelengths_nm);
-    }
+    std::vector<double>& nm = source.wavelengths_nm;
+    if (nm.empty()) nm = {petzval::d_line_nm};
+    if (!wavelengths->given()) std::ranges::sort(nm);
     options.light = examples::white_light(options.white_point);
     try {  // before the work
-      examples::rgb_weights(options.wavelengths_nm, options.light);
+      examples::rgb_weights(nm, options.light);
     } catch (const petzval::Error& error) {
       if (wavelengths->given() || options.setup.file.empty()) throw;
       examples::note(options.setup.file + ": " + error.what() + "; psf uses the d line, or --wavelengths");
-      options.wavelengths_nm = {petzval::d_line_nm};
+      nm = {petzval::d_line_nm};
     }
     const petzval::BokehControls controls = examples::controls_of(options.setup);
     std::vector<Subject> subjects;
-    options.setup.focus_mm = options.focus_mm.front(), source.wavelengths_nm = options.wavelengths_nm;
+    options.setup.focus_mm = options.focus_mm.front();
     if (options.lenses.empty()) options.lenses = {source.file};
     for (const std::string& lens : options.lenses) {
       source.file = lens;
-      Subject subject{examples::load_lens(options.setup, options.wavelengths_nm), {}, {}};
+      Subject subject{examples::load_lens(options.setup, nm), {}, {}};
       for (const Subject& other : subjects) {
         if (other.loaded.id == subject.loaded.id) {
           throw petzval::Error("LENS = " + lens + ": another lens is named " + subject.loaded.id +

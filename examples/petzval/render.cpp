@@ -39,7 +39,6 @@
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
-#include "support/expressive_flags.hpp"
 #include "support/files.hpp"
 #include "support/focus_points.hpp"
 #include "support/interrupt.hpp"
@@ -61,7 +60,6 @@ constexpr double noise_floor = 0.05;
 struct Options {
   std::string scene, integrator = "bidirectional", wavelengths, coatings, out_folder;
   examples::CameraFlags setup;
-  examples::ExpressiveFlags expressive;
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
@@ -161,11 +159,10 @@ class Job {
     examples::say_what_does_not_fit(lens_, setup_.film);
     choose_model();
     if (!options.setup.points_file.empty()) read_points();
-    if (options.expressive.change_nothing()) return;
-    if (options.expressive.dispersion != 1 && options.wavelengths == "d") {
+    if (!setup_.camera.expressive.dispersion.empty() && options.wavelengths == "d") {
       std::cerr << "note: --dispersion has an effect only with --wavelengths rgb or hero\n";
     }
-    setup_.camera.expressive = examples::expressive_of(options.expressive, lens_, setup_.film);
+    setup_.camera.expressive = examples::expressive_of(options.setup, lens_, setup_.film);
   }
 
   /// @throws petzval::Error  if the lens cannot be focused
@@ -318,7 +315,7 @@ class Job {
     setup_.camera.model = chosen_.model;
   }
   renderer::ModelForScene chosen() const {
-    if (!options_.setup.points_file.empty() || !setup_.focal_points.empty() || !options_.expressive.change_nothing() ||
+    if (!options_.setup.points_file.empty() || !setup_.focal_points.empty() || options_.setup.from_lens != 0 ||
         !setup_.camera.expressive.empty()) {
       throw petzval::Error(
           "--model auto: a focal surface or an expressive lens needs a first-order model by name: pinhole, thin, "
@@ -505,12 +502,8 @@ int commands::render(int argc, char** argv) {
   examples::add_focal_surface(app, options.setup,
                               "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
                               "first-order --model");
-  examples::add_expressive(app, options.expressive);
-  constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
-  examples::add_angle(app, "--tilt", options.setup.film.tilt_rad, below_quarter_turn,
-                      "tilt of the film about +x (degrees)");
-  examples::add_angle(app, "--swing", options.setup.film.swing_rad, below_quarter_turn,
-                      "swing of the film about +y (degrees)");
+  examples::add_expressive(app, options.setup);
+  examples::add_tilt(app, options.setup, {-89.9, 89.9, "an angle from -89.9 to 89.9"});
   app.add_option(
          "--wavelengths", options.wavelengths,
          "wavelengths of the light; d: the lens at the d line; rgb: one wavelength per channel; hero or visible: "

@@ -48,7 +48,7 @@ int commands::view(int argc, char** argv) {
       "of events: a state for each event, and DIR/event_0001.png and so on. Events that are refused, or whose state "
       "has no picture, are reported, the others go on, and the exit status is 1.",
       "petzval view");
-  lens_blur::add_input(app, input);
+  lens_blur::add_input(app, input, window.session.fov_deg, window.session.layers);
   examples::add_setup(app, setup);
   app.add_option("LENS", setup.lens.file, "shipped lens (petzval lenses) or lens file")
       ->default_str("double_gauss_52mm_f1.8");
@@ -56,12 +56,6 @@ int commands::view(int argc, char** argv) {
   examples::add_number(app, "--f-number", setup.f_number, examples::positive_number,
                        "f-number of the thin lens, or of LENS")
       ->default_str("LENS: wide open");
-  examples::add_number(app, "--fov", window.session.fov_deg, {1e-3, 120, "more than 0 and at most 120"},
-                       "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film "
-                       "24 mm high")
-      ->default_str("");
-  examples::add_count(app, "--layers", window.session.layers, {1, 64, "a whole number from 1 to 64"},
-                      "largest number of surfaces behind each other");
   auto* log =
       app.add_option("--replay", replay.log_file, "replay a log of events, without a window")->type_name("LOG.json");
   app.add_flag("--json", replay.json, "print states as JSON, one in each line")->needs(log);

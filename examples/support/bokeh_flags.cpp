@@ -15,14 +15,6 @@ bool plain_bokeh(const petzval::CameraSetup& setup) noexcept {
   return setup.iris_map.empty() && controls.edge().even() && !controls.vignettes() && controls.blades == 0;
 }
 
-std::string iris_image(const petzval::CameraSetup& setup) {
-  return setup.camera.bokeh.weight_map.keep_mean ? "" : setup.iris_map;
-}
-
-std::string weight_map(const petzval::CameraSetup& setup) {
-  return setup.camera.bokeh.weight_map.keep_mean ? setup.iris_map : "";
-}
-
 void add_bokeh(App& app, petzval::CameraSetup& setup) {
   petzval::BokehControls& c = setup.camera.bokeh;
   const auto map = [&setup](bool keep_mean) {

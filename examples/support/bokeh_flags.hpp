@@ -11,10 +11,6 @@ namespace examples {
 /// mean.
 void add_bokeh(App& app, petzval::CameraSetup& setup);
 
-/// The file of --iris-image or --weight-map; empty if it is not given.
-std::string iris_image(const petzval::CameraSetup& setup);
-std::string weight_map(const petzval::CameraSetup& setup);
-
 /// True if the set-up leaves the bokeh of the lens unchanged.
 bool plain_bokeh(const petzval::CameraSetup& setup) noexcept;
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "cli.hpp"
 #include "files.hpp"
+#include "json_input.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -16,6 +18,38 @@
 #include "text.hpp"
 
 namespace examples {
+namespace {
+
+/// The key of a set-up that has the value of a flag.
+constexpr std::pair<std::string_view, const char*> keys_of_flags[] = {
+    {"--blades", "iris.blades"},
+    {"--roundness", "iris.roundness"},
+    {"--iris-rotation", "iris.rotation_rad"},
+    {"--f-number", "f_number"},
+    {"--focus", "focus_mm"},
+    {"--model", "camera.model"},
+    {"--keep-light", "camera.bokeh.keep_light"},
+    {"--weight-strength", "camera.bokeh.weight_strength"},
+    {"--configuration", "lens.configuration"},
+    {"--thin-lens", "lens.thin_mm"},
+    {"--wavelengths", "lens.wavelengths_nm"}};
+
+/// The text of a set-up or a report. Of several lenses, the report of the lens.
+std::string report_of(const std::string& file, const std::vector<std::string>& lens) {
+  const std::string text = read_text(file, largest_json);
+  const Json all = Json::parse(text, nullptr, false);
+  if (!all.is_object() || !all.contains("lenses")) return text;
+  std::string names;
+  const Json document = read_json(file);
+  for (const Json& report : document["lenses"]) {
+    const std::string name = report.at("setup").at("lens").at("file");
+    if (lens == std::vector{name}) return report.dump();
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw petzval::Error("--setup = " + file + ": has several lenses; LENS must be one of " + names);
+}
+
+}  // namespace
 
 petzval::Film CameraFlags::sized_film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
   constexpr double max_side_px = 16384;
@@ -40,47 +74,47 @@ petzval::Film CameraFlags::sized_film(std::uint32_t columns, std::uint32_t rows,
 }
 
 void add_setup(App& app, CameraFlags& flags) {
-  app.add_option(
-         "--setup",
-         [&app, &flags](const std::string& file) {
-           const petzval::CameraOptions usual = flags.camera;
-           const std::string text = read_text(file, largest_json);
-           static_cast<petzval::CameraSetup&>(flags) =
-               for_flag("--setup", [&] { return petzval::camera_setup(text, file); });
-           const Json json = Json::parse(text), &setup = json.contains("setup") ? json["setup"] : json;
-           const auto has = [&](const char* key) { return setup.contains(Json::json_pointer(key)); };
-           if (!has("/camera/model")) flags.camera.model = usual.model;
-           if (!has("/camera/normalisation")) flags.camera.normalisation = usual.normalisation;
-           flags.file = file, flags.film_given = has("/film");
-           flags.pixels_given = has("/film/columns") && has("/film/rows");
-           // Kept for command lines without another lens.
-           flags.lens_of_file = std::exchange(flags.lens, {.wavelengths_nm = flags.lens.wavelengths_nm});
-           for (const char* replaced : {"LENS", "--focus"}) {
-             if (Option* const option = app.get_option(replaced)) option->required(false);
-           }
-         },
-         "set-up of the camera instead of LENS and flags; a report of render, blur or psf, or a file with its setup. "
-         "LENS and the flags that are given replace single values")
-      ->type_name("REPORT.json");
-  app.add_check([&app, &flags] {
-    if (flags.file.empty()) return;
-    const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + flags.file + ": " + why); };
-    const bool own_lens = !app.given("LENS") && flags.lens.thin_mm == 0;
-    if (!own_lens || app.given("--focus")) {
+  const auto read = [&app, &flags](const std::string& file) {
+    const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + file + ": " + why); };
+    const petzval::CameraOptions usual = flags.camera;
+    const std::string text = report_of(file, app.values("LENS"));
+    static_cast<petzval::CameraSetup&>(flags) = for_flag("--setup", [&] { return petzval::camera_setup(text, file); });
+    const Json json = Json::parse(text), &setup = json.contains("setup") ? json["setup"] : json;
+    const auto has = [&](const char* key) { return setup.contains(Json::json_pointer(key)); };
+    if (!has("/camera/model")) flags.camera.model = usual.model;
+    if (!has("/camera/normalisation")) flags.camera.normalisation = usual.normalisation;
+    flags.file = file, flags.film_given = has("/film");
+    flags.pixels_given = has("/film/columns") && has("/film/rows");
+    for (const char* replaced : {"LENS", "--focus"}) {
+      if (Option* const option = app.get_option(replaced)) option->required(false);
+    }
+    const bool other_lens = app.given("LENS") || app.given("--thin-lens") || app.given("--singlet");
+    const std::string& lens = flags.lens.file;
+    if (!other_lens && !lens.empty() && !petzval::find_lens(lens)) {
+      fail("lens: file = \"" + lens + "\"; must be an existing file or the name of a shipped lens");
+    }
+    if (other_lens) flags.lens = {.wavelengths_nm = flags.lens.wavelengths_nm};
+    if (other_lens || app.given("--focus")) {
       flags.film.z_mm.reset(), flags.focal_surface.default_inverse_distance.reset();
     }
-    if (flags.iris_area == "equal" && !app.given("--f-number")) {
+    if (app.values("--iris-area") == std::vector<std::string>{"equal"} && !app.given("--f-number")) {
       fail("--iris-area = equal needs --f-number: the f-number of a set-up is of the corners");
     }
-    if (own_lens) {
-      flags.lens = flags.lens_of_file;
-      const std::string& lens = flags.lens.file;
-      if (!lens.empty() && !petzval::find_lens(lens)) {
-        fail("lens: file = \"" + lens + "\"; must be an existing file or the name of a shipped lens");
-      }
+    if (!flags.focus_mm && app.get_option("--focus") && !app.given("--focus")) {
+      fail("focus_mm is missing; must be in the file or given by --focus");
     }
-    if (flags.focus_mm || flags.pull.moves() || !app.get_option("--focus")) return;
-    fail("focus_mm is missing; must be in the file or given by --focus");
+  };
+  app.add_option("--setup", read,
+                 "set-up of the camera instead of LENS and flags; a report of render, blur or psf, or a file with its "
+                 "setup. LENS and the flags that are given replace single values")
+      ->type_name("REPORT.json");
+  app.set_words([&app, &flags](const std::string& message) {
+    for (const auto& [flag, key] : keys_of_flags) {
+      const std::size_t end = message.find_first_of(" :=");
+      if (flags.file.empty() || message.substr(0, end) != flag || app.given(std::string(flag))) continue;
+      return flags.file + ": " + key + message.substr(flag.size());
+    }
+    return message;
   });
 }
 
@@ -112,9 +146,20 @@ void add_film(App& app, CameraFlags& flags, const std::string& help) {
       ->default_str(number(flags.film.width_mm) + 'x' + number(flags.film.height_mm));
 }
 
-void add_iris(App& app, CameraFlags& flags) {
+void add_tilt(App& app, CameraFlags& flags, const Range& degrees) {
+  add_angle(
+      app, "--tilt", flags.film.tilt_rad, degrees,
+      "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points are in its axes");
+  add_angle(app, "--swing", flags.film.swing_rad, degrees, "swing of the film about +y (degrees)");
+}
+
+void add_f_number(App& app, CameraFlags& flags) {
   add_number(app, "--f-number", flags.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
+}
+
+void add_iris(App& app, CameraFlags& flags) {
+  add_f_number(app, flags);
   add_iris_shape(app, flags);
 }
 
@@ -130,6 +175,78 @@ void add_iris_shape(App& app, CameraFlags& flags) {
                  "pass as much light as the round iris")
       ->one_of({"circumscribed", "equal"})
       ->capture_default_str();
+}
+
+namespace {
+
+constexpr Range factor{-1e6, 1e6, "a number from -1e6 to 1e6"};
+
+/// Parses "radius:power" or "x,y:offset".
+std::vector<double> parts_of(const std::string& flag, std::string text, const std::string& rule) {
+  const auto count = static_cast<std::size_t>(std::ranges::count(rule, ',')) + 2;
+  const std::string refused = flag + " = \"" + text.substr(0, 60) + "\"; must be " + rule;
+  if (text.find(':') != text.find_last_of(",:")) throw petzval::Error(refused);
+  std::ranges::replace(text, ':', ',');
+  std::istringstream in(text);
+  std::vector<double> numbers;
+  for (std::string part; std::getline(in, part, ',');) numbers.push_back(parse_number(flag, part, finite_number));
+  if (numbers.size() != count) throw petzval::Error(refused);
+  return numbers;
+}
+
+}  // namespace
+
+void add_expressive(App& app, CameraFlags& flags) {
+  petzval::ExpressiveLens& lens = flags.camera.expressive;
+  const auto add = [&app](const std::string& flag, const char* rule, auto& list, const auto& item, const char* help) {
+    const auto set = [=, &list](const std::vector<std::string>& texts) {
+      list.clear();
+      for (const std::string& text : texts) list.push_back(item(parts_of(flag, text, rule)));
+    };
+    app.add_option(flag, set, help)->type_name(rule);
+  };
+  // First, because the options below replace what it clears.
+  const auto start = [&flags, &lens](const std::string& text) {
+    flags.from_lens = parse_number("--from-lens", text, factor);
+    lens.power.clear(), lens.film_offsets.clear();
+  };
+  app.add_option("--from-lens", start,
+                 "factor of the real lens's spherical aberration and curvature of field to start from (1: unchanged); "
+                 "--power-spline and --curvature-points replace them")
+      ->type_name("NUMBER")
+      ->default_str("0");
+  add(
+      "--power-spline", "radius:power", lens.power,
+      [](const auto& n) {
+        return petzval::PowerKnot{n[0], n[1]};
+      },
+      "refractive power of the pupil's rings, relative to the lens: a spline through radius:power, radii from 0 (axis) "
+      "to 1 (rim), as 0:1 0.7:1.01 1:0.98");
+  add(
+      "--curvature-points", "x,y:offset", lens.film_offsets,
+      [](const auto& n) {
+        return petzval::FilmOffset{{n[0], n[1]}, n[2]};
+      },
+      "shift of film points away from the lens, all in mm: a surface through x,y:offset, as 0,0:0 18,12:0.3 "
+      "-18,12:0.3");
+  const auto disperse = [&lens](const std::string& text) {
+    lens.dispersion = {parse_number("--dispersion", text, factor)};
+    if (lens.dispersion.front() == 1) lens.dispersion.clear();
+  };
+  app.add_option("--dispersion", disperse, "factor of the lens's axial colour: 0 removes it, 1 keeps it")
+      ->type_name("NUMBER")
+      ->default_str("1");
+}
+
+petzval::ExpressiveLens expressive_of(const CameraFlags& flags, const petzval::Lens& lens, const petzval::Film& film) {
+  petzval::ExpressiveLens result = flags.camera.expressive;
+  if (flags.from_lens == 0) return result;
+  petzval::ExpressiveLens own = petzval::fit_expressive_lens(lens, film);
+  for (petzval::PowerKnot& knot : own.power) knot.power = 1 + flags.from_lens * (knot.power - 1);
+  for (petzval::FilmOffset& offset : own.film_offsets) offset.offset_mm *= flags.from_lens;
+  if (result.power.empty()) result.power = own.power;
+  if (result.film_offsets.empty()) result.film_offsets = own.film_offsets;
+  return result;
 }
 
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width) {

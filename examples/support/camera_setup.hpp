@@ -9,6 +9,7 @@
 #include "cli.hpp"
 #include "focus_pull.hpp"
 #include "load_lens.hpp"
+#include "petzval/camera/expressive_lens.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/io/camera_setup.hpp"
 #include "petzval/lens/lens.hpp"
@@ -23,10 +24,10 @@ struct CameraFlags : petzval::CameraSetup {
   FocusPull pull = {};                      ///< a focus that moves; focus_mm is then its first distance
   std::string iris_area = "circumscribed";  ///< meaning of f_number: "equal": of a round iris of the same area
   std::string points_file = {};             ///< points of the focal surface, used instead of focal_points
+  double from_lens = 0;                     ///< factor of the aberrations of the lens, for expressive_of()
   bool film_given = false;                  ///< the film has the size of --film or --setup
   bool pixels_given = false;                ///< the film has the pixels of --setup
   std::string file = {};                    ///< of --setup
-  petzval::LensSource lens_of_file = {};    ///< the lens of --setup
 
   CameraFlags() { focus_mm = 3000; }
 
@@ -53,10 +54,20 @@ void add_camera(App& app, CameraFlags& flags, const std::string& frames_help = "
 /// Adds --film. @param help  meaning of the size
 void add_film(App& app, CameraFlags& flags, const std::string& help = "width and height of the film (mm)");
 
+/// Adds --tilt and --swing. @param degrees  range
+void add_tilt(App& app, CameraFlags& flags, const Range& degrees);
+
+/// Adds --f-number.
+void add_f_number(App& app, CameraFlags& flags);
 /// Adds --blades, --roundness, --iris-rotation and --iris-area.
 void add_iris_shape(App& app, CameraFlags& flags);
 /// Adds the options of add_iris_shape() and --f-number.
 void add_iris(App& app, CameraFlags& flags);
+
+/// Adds --power-spline, --curvature-points, --dispersion and --from-lens, for camera.expressive.
+void add_expressive(App& app, CameraFlags& flags);
+/// camera.expressive, completed by --from-lens. @throws petzval::Error if fit_expressive_lens() throws
+petzval::ExpressiveLens expressive_of(const CameraFlags& flags, const petzval::Lens& lens, const petzval::Film& film);
 
 /// Adds --size, 0 if not given, for CameraFlags::sized_film.
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);

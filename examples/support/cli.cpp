@@ -95,6 +95,10 @@ Option* App::add_option(const std::string& name, const std::function<void(const 
                         const std::string& help) {
   return kept(app_->add_option_function<std::string>(name, set, help));
 }
+Option* App::add_option(const std::string& name, const std::function<void(const std::vector<std::string>&)>& set,
+                        const std::string& help) {
+  return kept(app_->add_option_function<std::vector<std::string>>(name, set, help));
+}
 Option* App::add_flag(const std::string& name, bool& value, const std::string& help) {
   return kept(app_->add_flag(name, value, help));
 }
@@ -102,9 +106,9 @@ Option* App::get_option(const std::string& name) {
   CLI::Option* const option = app_->get_option_no_throw(name);
   return option ? kept(option) : nullptr;
 }
-bool App::given(const std::string& name) const {
+std::vector<std::string> App::values(const std::string& name) const {
   const CLI::Option* const option = app_->get_option_no_throw(name);
-  return option && option->count() > 0;
+  return option ? option->results() : std::vector<std::string>();
 }
 
 void App::want_other_files(const std::string& flag, const std::string& file) const {
@@ -537,7 +541,7 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
                  (near.empty() ? " (see --help)" : "; did you mean " + near + "?"))
                     .c_str());
   } catch (const std::exception& error) {
-    return fail(error.what());
+    return fail(app.words_(error.what()).c_str());
   }
 }
 

@@ -86,15 +86,20 @@ class App {
   Option* add_option(const std::string& name, std::vector<std::string>& values, const std::string& help);
   Option* add_option(const std::string& name, const std::function<void(const std::string&)>& set,
                      const std::string& help);
+  Option* add_option(const std::string& name, const std::function<void(const std::vector<std::string>&)>& set,
+                     const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
-  /// The option of a name; null if there is none.
+  /// The option of a name; null if no option has it.
   Option* get_option(const std::string& name);
-  /// True if there is an option of this name and the command line has it.
-  bool given(const std::string& name) const;
+  /// The values of an option on the command line; empty if it is not given or does not exist.
+  std::vector<std::string> values(const std::string& name) const;
+  bool given(const std::string& name) const { return !values(name).empty(); }
   /// @throws petzval::Error  if an existing file is the value of an option other than `flag`
   void want_other_files(const std::string& flag, const std::string& file) const;
   /// Adds a check that run() makes before the body.
   void add_check(std::function<void()> check) { checks_.push_back(std::move(check)); }
+  /// Sets a function that run() applies to the messages of errors.
+  void set_words(std::function<std::string(const std::string&)> words) { words_ = std::move(words); }
 
  private:
   friend int run(App& app, int argc, char** argv, const std::function<void()>& body);
@@ -103,6 +108,7 @@ class App {
   std::unique_ptr<CLI::App> app_;
   std::deque<Option> options_;
   std::vector<std::function<void()>> checks_;
+  std::function<std::string(const std::string&)> words_ = [](const std::string& message) { return message; };
 };
 
 /// Runs work and returns its result. Adds the flag to the message of a petzval::Error unless the message begins with a

@@ -31,9 +31,9 @@ struct Entry : JsonEntry {
       throw Error(where + ": has both of world_mm and position_mm; must have one of them");
     }
     const bool at_infinity = flag("at_infinity", false);
-    const auto at = numbers<3>(place_key(), "three finite numbers, [x, y, z]");
-    if (!at) return {};
-    return petzval::ScenePoint{{(*at)[0], (*at)[1], (*at)[2]}, at_infinity};
+    const std::vector<double> at = numbers(place_key(), 3, "three finite numbers, [x, y, z]");
+    if (at.empty()) return {};
+    return petzval::ScenePoint{{at[0], at[1], at[2]}, at_infinity};
   }
   const char* place_key() const { return has("world_mm") ? "world_mm" : "position_mm"; }
   /// Infinite for null.
@@ -101,17 +101,17 @@ petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camer
                                 const WorldToLens& to_lens) {
   const std::string& where = entry.where;
   const double entrance_z = petzval::pupils(camera.lens()).entrance.z;
-  const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
+  const std::vector<double> pixel = entry.numbers("pixel", 2, "two finite numbers, [x, y]");
   const auto world = entry.place();
-  if (pixel.has_value() == world.has_value()) {
-    throw Error(where + ": has " + (pixel ? "both of" : "neither of") +
+  if (pixel.empty() != world.has_value()) {
+    throw Error(where + ": has " + (world ? "both of" : "neither of") +
                 " pixel and position_mm (or world_mm); must have one of them");
   }
   petzval::FocalPoint point{.extent_stops = entry.extent(),
                             .weight = entry.weight(),
                             .fade = entry.number("fade", fraction_range).value_or(1)};
-  if (pixel) {
-    point.film_point = camera.film().point((*pixel)[0], (*pixel)[1]);
+  if (!world) {
+    point.film_point = camera.film().point(pixel[0], pixel[1]);
   } else {
     constexpr double far_mm = 1e12;
     Vec3<double> position = to_lens(world->position);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
@@ -43,13 +41,10 @@ struct JsonEntry {
   bool flag(const char* key, bool unless) const;
   /// A list of numbers. rule: the same in words, for messages.
   std::vector<double> list(std::size_t count, const Range& range, const std::string& rule) const;
-  template <std::size_t count>
-  std::optional<std::array<double, count>> numbers(const char* key, const char* rule) const {
+  /// A list of `count` finite numbers; empty if the key is missing.
+  std::vector<double> numbers(const char* key, std::size_t count, const char* rule) const {
     if (!has(key)) return {};
-    const std::vector<double> found = JsonEntry{where + ": " + key, json.at(key)}.list(count, finite_number, rule);
-    std::array<double, count> result{};
-    std::copy(found.begin(), found.end(), result.begin());
-    return result;
+    return JsonEntry{where + ": " + key, json.at(key)}.list(count, finite_number, rule);
   }
 };
 

@@ -13,6 +13,11 @@ void show_progress(const std::string& command);
 /// Removes the line for good.
 void hide_progress();
 
+/// Time since a start, ms.
+inline double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// The steps of a long job, for the line of show_progress(), which adds the time left as if all steps took equally
 /// long. Only one Progress may exist at a time.
 class Progress {

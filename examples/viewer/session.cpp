@@ -33,10 +33,6 @@ constexpr double pupil_growth = 1.15;
 /// Part of the picture by which layers extend further for the breathing and the distortion of a real lens.
 constexpr double breathing = 0.05;
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::string exact(double value) { return std::isinf(value) ? "inf" : Json(value).dump(); }
 
 /// Quotes a word of a command line if it has characters that are special in a shell.
@@ -171,12 +167,9 @@ float Session::depth_mm(int column, int row) const {
 lens_blur::LensView Session::view() const {
   const petzval::FocusEditorState& state = editor_->state();
   lens_blur::LensView view{.lens = state.lens,
-                           .thin_diameter_mm = state.setup.lens.thin_mm / state.f_number,
-                           .film = state.setup.film,
+                           .setup = state.setup,
                            .coloured = state.setup.lens.wavelengths_nm.size() == 4,
-                           .controls = state.setup.camera.bokeh,
                            .surface = state.surface,
-                           .expressive = state.setup.camera.expressive,
                            .made = state.camera};
   view.vertical_angle_rad = petzval::radians(options_.fov_deg > 0 ? options_.fov_deg : 30);
   view.focus_depth_mm = state.focus_mm + petzval::pupils(state.lens).entrance.z;
@@ -185,7 +178,7 @@ lens_blur::LensView Session::view() const {
 
 /// Radius of the pupil of the state, with room for pupils off the axis and for negative extents.
 double Session::widest_radius(const lens_blur::LensView& view) const {
-  const double radius = view.thin() ? view.thin_diameter_mm / 2 : petzval::pupils(view.lens).entrance.diameter / 2;
+  const double radius = view.thin() ? view.thin_radius_mm() : petzval::pupils(view.lens).entrance.diameter / 2;
   const double extent = view.surface ? std::exp2(std::max(0.0, -view.surface->least_extent()) / 2) : 1;
   return radius * extent * (view.thin() ? 1 : pupil_growth);
 }
@@ -224,7 +217,7 @@ double Session::make_layers() {
   input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers_);
   threshold_ = lens_blur::threshold_of(layers_, !input_.scene());
   radius_mm_ = radius;
-  return ms_since(start);
+  return examples::ms_since(start);
 }
 
 Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token& stop) {
@@ -238,7 +231,7 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
                   blurred_);
   Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
   result.memory_mb = memory_of(layers_, blurred_);
-  result.milliseconds = ms_since(start);
+  result.milliseconds = examples::ms_since(start);
   return result;
 }
 
@@ -262,7 +255,7 @@ Frame Session::still(const std::stop_token& stop) {
                .rays = pattern.rays,
                .memory_mb = memory_of(layers, blurred),
                .still = true};
-  result.milliseconds = ms_since(start);
+  result.milliseconds = examples::ms_since(start);
   return result;
 }
 
@@ -412,17 +405,17 @@ SessionOptions options_of(const Json& log, const std::string& where) {
     const std::string message = error.what();  // begins with a position in `setup`
     throw Error(where + message.substr(message.find(": ")));
   }
-  if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]")) {
-    for (const double side : *size) {
+  if (const std::vector<double> size = entry.numbers("size", 2, "two whole numbers, [width, height]"); !size.empty()) {
+    for (const double side : size) {
       if (!(side >= 1 && side <= 16384 && side == std::floor(side))) {
         entry.refuse("size", "two whole numbers from 1 to 16384");
       }
     }
     if (options.input.scene.empty()) {
-      options.file_columns = static_cast<int>((*size)[0]), options.file_rows = static_cast<int>((*size)[1]);
+      options.file_columns = static_cast<int>(size[0]), options.file_rows = static_cast<int>(size[1]);
     } else {
-      options.input.width = static_cast<std::uint32_t>((*size)[0]);
-      options.input.height = static_cast<std::uint32_t>((*size)[1]);
+      options.input.width = static_cast<std::uint32_t>(size[0]);
+      options.input.height = static_cast<std::uint32_t>(size[1]);
     }
   }
   options.fov_deg = entry.number("fov_deg", {1e-3, 120, "more than 0 and at most 120"}).value_or(0);

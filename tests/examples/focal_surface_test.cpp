@@ -92,6 +92,28 @@ TEST_F(FocalSurfaceProgram, QueriesEqualTheValuesOfThePoints) {
   }
 }
 
+TEST_F(FocalSurfaceProgram, OneFileOfPointsServesAllCommands) {
+  write("points.json", R"([{"id": "eye", "position_mm": [100, 50, -1500], "weight": 2},
+    {"world_mm": [0, 0, -2], "at_infinity": true, "blur_mm": 0}])");
+  write("q.csv", "x_px,y_px\n150,100\n");
+  ASSERT_EQ(run("surface", arguments({"--table", path("q.csv")})).status, 0);
+  EXPECT_GT(rows(read(path("out/answers.csv")))[0][2], 1e9);
+#ifdef PETZVAL_TEST_HAS_tilt
+  EXPECT_EQ(
+      run("tilt", {lens("double_gauss_100mm_f2_28deg"), "--points", path("points.json"), "--out", path("out")}).err,
+      "");
+  const Arguments pull{"--thin-lens", "50", "--f-number", "2", "--json", "--out", path("out"), "--keys"};
+  const auto film_of = [&](const std::string& file) {
+    Arguments line = pull;
+    line.push_back(path(file));
+    return nlohmann::json::parse(run("pull", line).out)["frames"][0]["film_z_mm"].get<double>();
+  };
+  write("keys.json", R"({"points": [{"keys": [{"time_s": 0, "position_mm": [100, 50, -1500], "weight": 2}]},
+    {"keys": [{"time_s": 0, "position_mm": [0, 0, -2], "at_infinity": true}]}]})");
+  EXPECT_EQ(film_of("points.json"), film_of("keys.json"));
+#endif
+}
+
 // World points lie where the camera sees them; other flags change the answers.
 TEST_F(FocalSurfaceProgram, AcceptsWorldPointsAndKinds) {
   write("points.json", R"({"points": [{"world_mm": [0, 0, -2000]}, {"world_mm": [200, 100, -3000]}]})");

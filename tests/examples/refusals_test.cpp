@@ -112,7 +112,7 @@ const std::vector<Refused> all = {
      {{{"--power-spline", "0.5"}, {"--power-spline", "\"0.5\""}},
       {{"--power-spline", "0:1", "0:2"}, {"power", "knot 2", 0}},
       {{"--power-spline", "0:x"}, {"--power-spline", "\"x\""}},
-      {{"--curvature-points", "1:2"}, {"--curvature-points", "\"1\""}},
+      {{"--curvature-points", "1:2"}, {"--curvature-points", "\"1:2\""}},
       {{"--curvature-points", "0,0:-500"}, {"film offsets", 124.49150670677673}},
       {{"--model", "exact_float"}, {"--model", "exact_float"}},
       {{"--at", "20", "--from-lens", "1", "--from", "film"}, {"scene point", "z"}}}},

@@ -166,6 +166,20 @@ TEST_F(Setup, PsfUsesASetupAndStatesWhatItUsed) {
   EXPECT_EQ(pictures("cat_psf"), pictures("wide_psf"));
 }
 
+TEST_F(Setup, ReportOfSeveralLensesNeedsOneOfThem) {
+  const Arguments lenses = expanded({"LENS", "LENS:double_gauss_52mm_f1.8"});
+  Arguments line{lenses[0], lenses[1], "--focus", "1m", "--f-number", "4", "--at", "2m", "--rays", "64"};
+  line.insert(line.end(), {"--format", "exr", "--out", path("two")});
+  ASSERT_EQ(run("psf", line).status, 0);
+  const Arguments setup{"--setup", path("two/bokeh.json"), "--size", "8x8"};
+  const json found = report("render", {setup[0], setup[1], setup[2], setup[3], lenses[1]}, "one")["setup"];
+  EXPECT_EQ(found["lens"]["file"], lenses[1]);
+  EXPECT_EQ(found["f_number"], 4);
+  Arguments without{"--scene", "balls", "--out", path("out")};
+  without.insert(without.end(), setup.begin(), setup.end());
+  expect_failure("render", without, {"bokeh.json", "LENS", lenses[0], lenses[1]});
+}
+
 TEST_F(Setup, PsfTakesExactRaysAndWavelengthsOfAnyPicture) {
   report("render", {"LENS", "--focus", "1m", "--size", "8x8", "--f-number", "8", "--wavelengths", "hero"}, "hero");
   const json waves = report("psf", {"--setup", "@hero.json", "--diffraction"}, "waves");
@@ -206,6 +220,8 @@ TEST_F(Setup, RefusesFaultsWithFileKeyAndValue) {
   refused("/lens/thin_mm", 50, {"lens", 2});
   refused("/lens/file", "gone.zmx", {"file", "gone.zmx"});
   refused("/film/tilt_rad", 4, {"tilt_rad", 4});
+  refused("/iris/blades", 2, {"iris.blades", 2});
+  refused("/lens/wavelengths_nm", {5}, {"lens.wavelengths_nm", "\"5\""});
   refused("/camera/model", "thinnest", {"model", "thinnest"});
   json unfocused = setup;
   unfocused.erase("focus_mm");

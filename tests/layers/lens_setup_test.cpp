@@ -75,7 +75,7 @@ TEST(BlurLens, IsSharpAtItsFocusWithASecondRimOrAberrations) {
     LensFlags rim = thin_lens(), expressive = thin_lens();
     rim.setup.f_number = expressive.setup.f_number = f_number;
     rim.setup.camera.bokeh.lens_ratio = 1.1;
-    expressive.expressive.curvature_points = {"0,0:0", "9,0:0.001", "0,9:0.001"};
+    expressive.setup.camera.expressive.film_offsets = {{{0, 0}, 0}, {{9, 0}, 0.001}, {{0, 9}, 0.001}};
     for (const LensFlags& flags : {rim, expressive}) {
       const LensRays rays = lens_of(flags).rays(1000, 1);
       const std::vector<LayerRay> middle = rays_at(rays, 0, 40, 30);
