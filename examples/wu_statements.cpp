@@ -87,13 +87,6 @@ std::vector<Verdict> all_verdicts(std::uint32_t samples) {
   return all;
 }
 
-std::string fixed(double value, int decimals) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::fixed << std::setprecision(decimals) << value;
-  return text.str();
-}
-
 std::array<std::string, 12> cells(const Verdict& v) {
   return {v.lens,
           examples::number(v.focus_mm),
@@ -102,11 +95,11 @@ std::array<std::string, 12> cells(const Verdict& v) {
           words(v.printed),
           words(v.found),
           v.agrees ? "yes" : "NO",
-          fixed(v.rms_radius, 3),
-          fixed(v.shape.core, 2),
-          fixed(v.shape.brightest, 2) + " at " + fixed(0.1 * v.shape.brightest_ring + 0.05, 2),
-          fixed(v.shape.darkest_inside, 2),
-          fixed(v.shape.deviation, 2)};
+          examples::fixed(v.rms_radius, 3),
+          examples::fixed(v.shape.core, 2),
+          examples::fixed(v.shape.brightest, 2) + " at " + examples::fixed(0.1 * v.shape.brightest_ring + 0.05, 2),
+          examples::fixed(v.shape.darkest_inside, 2),
+          examples::fixed(v.shape.deviation, 2)};
 }
 
 constexpr std::array<const char*, 12> headings{"lens",    "focus mm",       "criterion",      "distances from",
@@ -121,8 +114,8 @@ std::vector<PupilCells> pupils() {
     const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
     const petzval::Lens lens = examples::load_lens({.file = file.string()}, std::array{petzval::d_line_nm}).lens;
     const auto textbook = examples::textbook_entrance_pupil(lens, -examples::wu_light_mm);
-    rows.push_back({wu.lens, fixed(textbook.diameter, 3), std::to_string(textbook.limiting),
-                    fixed(petzval::pupils(lens).entrance.diameter, 3)});
+    rows.push_back({wu.lens, examples::fixed(textbook.diameter, 3), std::to_string(textbook.limiting),
+                    examples::fixed(petzval::pupils(lens).entrance.diameter, 3)});
   }
   return rows;
 }

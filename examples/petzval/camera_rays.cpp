@@ -30,7 +30,6 @@ namespace {
 using examples::CsvColumn;
 using examples::LoadedLens;
 
-constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
 constexpr examples::Range unit_interval{0, 1, "a number from 0 to 1"};
 constexpr std::array<CsvColumn, 5> sample_columns{{{"film_x_mm"},
                                                    {"film_y_mm"},
@@ -154,10 +153,7 @@ int commands::camera_rays(int argc, char** argv) {
   examples::add_model(app, setup.camera.model);
   examples::add_camera(app, setup);
   examples::add_bokeh(app, setup);
-  examples::add_angle(app, "--tilt", setup.film.tilt_rad, below_quarter_turn,
-                      "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
-                      "are in the axes of the film");
-  examples::add_angle(app, "--swing", setup.film.swing_rad, below_quarter_turn, "swing of the film about +y (degrees)");
+  examples::add_tilt(app, setup, {-89.9, 89.9, "an angle from -89.9 to 89.9"});
   app.get_option("--focus")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {

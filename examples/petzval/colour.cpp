@@ -51,8 +51,7 @@ struct Options {
 
 /// Wavelengths over the visible range, including the wavelengths of the RGB triple.
 std::vector<double> wavelengths_nm() {
-  std::vector<double> set;
-  for (int nm = 430; nm <= 670; nm += 10) set.push_back(nm);
+  std::vector<double> set = examples::parse_wavelengths("wavelengths", "visible");
   for (const double nm : petzval::rgb_triple_nm) {
     if (std::find(set.begin(), set.end(), nm) == set.end()) set.push_back(nm);
   }
@@ -153,20 +152,18 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
   return result;
 }
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
-
 Json to_json(const petzval::ChromaticAberration& colour, const Options& options) {
   const auto set = wavelengths_nm();
   Json longitudinal = Json::array(), lateral = Json::array();
   for (std::size_t w = 0; w < set.size(); ++w) {
     longitudinal.push_back({{"wavelength_nm", set[w]},
-                            {"paraxial_focus_shift_mm", or_null(colour.paraxial_focus_shift[w])},
-                            {"sharpest_focus_shift_mm", or_null(colour.sharpest_focus_shift[w])}});
+                            {"paraxial_focus_shift_mm", examples::or_null(colour.paraxial_focus_shift[w])},
+                            {"sharpest_focus_shift_mm", examples::or_null(colour.sharpest_focus_shift[w])}});
   }
   for (std::size_t i = 0; i < options.field_deg.size(); ++i) {
     Json rows = Json::array();
     for (std::size_t w = 0; w < set.size(); ++w) {
-      rows.push_back({{"wavelength_nm", set[w]}, {"chief_ray_shift_mm", or_null(colour.lateral[i][w])}});
+      rows.push_back({{"wavelength_nm", set[w]}, {"chief_ray_shift_mm", examples::or_null(colour.lateral[i][w])}});
     }
     lateral.push_back({{"field_deg", options.field_deg[i]}, {"wavelengths", std::move(rows)}});
   }

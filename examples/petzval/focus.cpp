@@ -38,11 +38,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();  // no value
 
 struct Options {
-  petzval::LensSource lens_file;
-  petzval::DistanceOrigin origin{};
+  examples::CameraFlags setup;
   std::vector<std::string> criteria{"min_rms", "paraxial", "min_max"};
   std::vector<double> distance_mm, field_deg{0}, wavelengths_nm;  // empty: values of the file
-  double blur_mm = 0.03, f_number = 0;                            // f_number 0: wide open
+  double blur_mm = 0.03;
   bool json = false;
 };
 
@@ -85,16 +84,12 @@ std::vector<double> usual_distances(const petzval::Lens& lens, const petzval::De
 }
 
 petzval::FocusOptions focus_options(const std::string& criterion, const Options& options) {
-  petzval::FocusOptions result{
-      .criterion = examples::named(criterion, examples::focus_criteria), .origin = options.origin, .fields = {}};
+  petzval::FocusOptions result{.criterion = examples::named(criterion, examples::focus_criteria),
+                               .origin = options.setup.focus.origin,
+                               .fields = {}};
   for (const double degrees : options.field_deg) result.fields.push_back({petzval::radians(degrees), 1});
   result.wavelength_weights.assign(options.wavelengths_nm.size(), 1);
   return result;
-}
-
-petzval::Lens stopped_down(const examples::LoadedLens& loaded, double f_number) {
-  if (f_number == 0) return loaded.lens;
-  return examples::stopped_to(loaded.lens, f_number);
 }
 
 void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& focus, double blur_mm) {
@@ -129,7 +124,7 @@ std::string reason(const petzval::Lens& lens, const Row& row, const Options& opt
 /// Throws for fields without light and for reports without any result. Prints a note for distances that look like
 /// metres.
 void want_answers(const Report& report, const std::vector<double>& distances, const Options& options) {
-  const double z = petzval::origin_z(report.lens, options.origin) - *std::ranges::max_element(distances);
+  const double z = petzval::origin_z(report.lens, options.setup.focus.origin) - *std::ranges::max_element(distances);
   const bool no_rays =
       std::ranges::any_of(report.rows, [](const Row& r) { return r.focus.status == FocusStatus::no_rays; });
   for (const double field : options.field_deg) {
@@ -150,9 +145,9 @@ void want_answers(const Report& report, const std::vector<double>& distances, co
 }
 
 Report report(const examples::LoadedLens& loaded, const Options& options) {
-  Report result{stopped_down(loaded, options.f_number), {}, {}};
+  Report result{examples::stopped_down(loaded.lens, options.setup), {}, {}};
   const auto distances = options.distance_mm.empty()
-                             ? usual_distances(result.lens, loaded.prescription.design, options.origin)
+                             ? usual_distances(result.lens, loaded.prescription.design, options.setup.focus.origin)
                              : options.distance_mm;
   examples::Progress progress("focus", options.criteria.size() * distances.size());
   for (const std::string& criterion : options.criteria) {
@@ -187,7 +182,7 @@ Json to_json(const Report& report, const Options& options) {
     const Limits& limits = limits_of(report, r.criterion);
     rows.push_back({{"criterion", r.criterion},
                     {"distance_mm", finite_or_null(r.distance)},
-                    {"distance_from", petzval::name(options.origin)},
+                    {"distance_from", petzval::name(options.setup.focus.origin)},
                     {"status", r.refusal.empty() ? std::string(petzval::name(r.focus.status)) : "refused"},
                     {"message", r.refusal.empty() ? Json() : Json(r.refusal)},
                     {"film_z_mm", solved(r) ? finite_or_null(r.focus.film_z) : Json()},
@@ -206,15 +201,12 @@ Json to_json(const Report& report, const Options& options) {
 std::string in_words(double value, int decimals) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "infinity";
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::fixed << std::setprecision(decimals) << value;
-  return text.str();
+  return examples::fixed(value, decimals);
 }
 
 std::string to_text(const Report& report, const Options& options) {
   std::ostringstream text;
-  text << report.lens.name() << "\ndistances in mm from the " << examples::in_words(options.origin)
+  text << report.lens.name() << "\ndistances in mm from the " << examples::in_words(options.setup.focus.origin)
        << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
        << " mm in diameter (too_blurred: even the sharpest image has a larger blur; increase --f-number or --blur)\n";
   std::string before;
@@ -261,7 +253,7 @@ int commands::focus(int argc, char** argv) {
       "diameters: the paraxial cone, the uniform disc with the RMS radius, or twice the maximum radius.\n"
       "thin and paraxial use only the axis and the wavelength nearest to the d line (587.5618 nm).",
       "petzval focus");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   app.add_flag(
       "--json", options.json,
       "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained by "
@@ -270,12 +262,10 @@ int commands::focus(int argc, char** argv) {
   examples::add_lengths(app, "--at", options.distance_mm, examples::positive_length, "subject distances (mm), or inf")
       ->default_str("the object of the file if finite, else 10, 20, 50, 100 focal lengths, rounded, and inf");
   examples::add_criteria(app, options.criteria);
-  examples::add_distance_origin(app, options.origin);
+  examples::add_distance_origin(app, options.setup.focus.origin);
   examples::add_length(app, "--blur", options.blur_mm, examples::positive_number,
                        "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");
-  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "f-number to stop the lens down to (by exact rays)")
-      ->default_str("wide open");
+  examples::add_f_number(app, options.setup);
   examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "fields of min_rms and min_max, of equal weight (degrees)");
   examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm,
@@ -287,7 +277,7 @@ int commands::focus(int argc, char** argv) {
       if (std::ranges::count(options.criteria, criterion) == 1) continue;
       throw petzval::Error("--criterion: " + criterion + " occurs twice; criteria must differ");
     }
-    examples::LensFile file = examples::read_lens(options.lens_file);
+    examples::LensFile file = examples::read_lens(options.setup.lens);
     if (options.wavelengths_nm.empty()) options.wavelengths_nm = {examples::light_of(file).primary_nm};
     const Report r = report(examples::compiled(std::move(file), options.wavelengths_nm), options);
     std::cout << (options.json ? to_json(r, options).dump(1) + '\n' : to_text(r, options));

@@ -259,14 +259,8 @@ void merge(const std::vector<std::string>& names, const std::string& out, const 
   say(examples::write_psf_set(job, job.gather(folders), out), output);
 }
 
-/// An optional number.
-struct Maybe {
-  double value = 0;
-  examples::Option* option = nullptr;
-};
-
-void query(const std::string& file, PsfSetPoint point, petzval::DistanceOrigin origin, const Maybe& wavelength,
-           const Maybe& f_number, const std::string& out) {
+/// point: with wavelength and f-number 0 if they are not given.
+void query(const std::string& file, PsfSetPoint point, petzval::DistanceOrigin origin, const std::string& out) {
   examples::want_ending("--out", out, ".exr");
   std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
   const std::string of_set = examples::distance_from(parts.front());
@@ -276,11 +270,9 @@ void query(const std::string& file, PsfSetPoint point, petzval::DistanceOrigin o
   }
   const petzval::PsfSet set = petzval::psf_set_of(std::move(parts), file);
   const auto& nm = set.axes().wavelengths_nm;
-  point.wavelength_nm =
-      wavelength.option->given() ? wavelength.value : *std::min_element(nm.begin(), nm.end(), [](double a, double b) {
-        return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
-      });
-  point.f_number = f_number.option->given() ? f_number.value : set.axes().f_numbers.front();
+  const auto from_d = [](double a) { return std::abs(a - petzval::d_line_nm); };
+  if (point.wavelength_nm == 0) point.wavelength_nm = *std::ranges::min_element(nm, {}, from_d);
+  if (point.f_number == 0) point.f_number = set.axes().f_numbers.front();
   petzval::ExrPart part = petzval::to_exr_part(set.at(point), point);
   part.texts[examples::distance_from_key] = of_set;
   petzval::write_exr({&part, 1}, out);
@@ -347,7 +339,6 @@ int main_query(int argc, char** argv) {
   std::string file, out;
   petzval::DistanceOrigin origin{};
   PsfSetPoint point;
-  Maybe wavelength, f_number;
   examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.",
                     "petzval psf-set query");
   app.add_option("FILE.exr", file, "set of PSFs written by petzval psf-set")->required();
@@ -358,13 +349,13 @@ int main_query(int argc, char** argv) {
       ->required()
       ->default_str("");
   examples::add_distance_origin(app, origin);
-  wavelength.option = examples::add_wavelength(app, "--wavelengths", wavelength.value, "wavelength")
-                          ->default_str("wavelength of the set nearest to the d line");
-  f_number.option = examples::add_number(app, "--f-number", f_number.value, examples::positive_number, "f-number")
-                        ->default_str("smallest f-number of the set");
+  examples::add_wavelength(app, "--wavelengths", point.wavelength_nm, "wavelength")
+      ->default_str("wavelength of the set nearest to the d line");
+  examples::add_number(app, "--f-number", point.f_number, examples::positive_number, "f-number")
+      ->default_str("smallest f-number of the set");
   examples::add_out_file(app, out, "PSF to write: a set of one part", "PSF.exr")->required();
   examples::add_threads(app);
-  return examples::run(app, argc, argv, [&] { query(file, point, origin, wavelength, f_number, out); });
+  return examples::run(app, argc, argv, [&] { query(file, point, origin, out); });
 }
 
 }  // namespace

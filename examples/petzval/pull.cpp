@@ -94,23 +94,21 @@ class Pull {
 
   petzval::FocusCriterion criterion() const { return options_.focus.criterion; }
 
-  void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
-    const auto found = lens_.exact ? petzval::autofocus(*lens_.lens, targets, film_, criterion(), rays)
-                                   : petzval::autofocus(lens_.ideal, targets, film_);
+  template <class Fit>
+  void use(const Fit& found, Frame& frame) {
     frame.status = petzval::name(found.status);
-    if (!found) return;
-    film_ = found.film;
-    frame.rms_um = 1e3 * found.rms_mm;
+    if (found) film_ = found.film, frame.rms_um = 1e3 * found.rms_mm;
+  }
+
+  void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
+    lens_.exact ? use(petzval::autofocus(*lens_.lens, targets, film_, criterion(), rays), frame)
+                : use(petzval::autofocus(lens_.ideal, targets, film_), frame);
   }
 
   void tilt(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
     const petzval::TiltOptions tilt{.film = film_, .rays = rays};
-    const auto found =
-        lens_.exact ? petzval::fit_tilt(*lens_.lens, targets, tilt) : petzval::fit_tilt(lens_.ideal, targets, tilt);
-    frame.status = petzval::name(found.status);
-    if (!found) return;
-    film_ = found.film;
-    frame.rms_um = 1e3 * found.rms_mm;
+    lens_.exact ? use(petzval::fit_tilt(*lens_.lens, targets, tilt), frame)
+                : use(petzval::fit_tilt(lens_.ideal, targets, tilt), frame);
   }
 
   /// Distance in focus on the axis, by rays for the real model; infinite if no finite distance is in focus.

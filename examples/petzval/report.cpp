@@ -31,13 +31,11 @@
 namespace {
 
 struct Options {
-  petzval::LensSource lens_file;
+  examples::CameraFlags setup;
   std::optional<int> first_surface_number;  // nullopt: as the file counts
   std::vector<double> wavelengths_nm;       // empty: of the file
   double subject_mm = 0;
   bool subject_given = false, json = false;
-  double f_number = 0;  // 0: wide open
-  petzval::FocusOptions focus;
   std::string film, out_folder;
   std::vector<double> field_deg;
   std::string coatings;  // empty: the coatings of the file
@@ -45,7 +43,7 @@ struct Options {
 
 /// Subject, film and light from the command line; by default from the file.
 examples::ReportSubject subject_of(const examples::LensFile& file, const Options& options) {
-  examples::ReportSubject subject{.focus = options.focus};
+  examples::ReportSubject subject{.focus = options.setup.focus};
   const petzval::DesignData& design = file.prescription.design;
   const bool designed =
       std::isfinite(design.object_distance_mm) || !design.wavelengths.empty() || !design.fields.empty();
@@ -69,15 +67,15 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
 }
 
 /// The lens, stopped down and focused.
-petzval::Lens set(petzval::Lens lens, const Options& options, const examples::ReportSubject& subject) {
-  if (options.f_number > 0) lens = examples::stopped_to(lens, options.f_number);
+petzval::Lens set(const petzval::Lens& wide_open, const Options& options, const examples::ReportSubject& subject) {
+  const petzval::Lens lens = examples::stopped_down(wide_open, options.setup);
   return subject.film_of_file ? lens : examples::for_flag("--at", [&] {
     return petzval::with_focus(lens, subject.distance_mm, subject.focus);
   });
 }
 
 examples::Report report_of(const Options& options) {
-  examples::LensFile file = examples::read_lens(options.lens_file);
+  examples::LensFile file = examples::read_lens(options.setup.lens);
   file.first_surface_number = options.first_surface_number.value_or(file.first_surface_number);
   examples::ReportSubject subject = subject_of(file, options);
   const std::array primary{subject.light.primary_nm};
@@ -153,7 +151,7 @@ int commands::report(int argc, char** argv) {
       "LENS_transmittance.svg and LENS_transmittance_field.svg, and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead; with --json on standard error.",
       "petzval report");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   app.add_option(
          "--surfaces-from", [&options](const std::string& text) { options.first_surface_number = text == "1" ? 1 : 0; },
          "number of the first surface in the report; patents count from 1")
@@ -162,13 +160,11 @@ int commands::report(int argc, char** argv) {
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
   examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm, "wavelengths")
       ->default_str("wavelengths of the file, else F, d and C; numbers at the primary one, the nearest to d of a list");
-  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "f-number to stop the lens down to")
-      ->default_str("wide open");
+  examples::add_f_number(app, options.setup);
   const auto* subject = examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
                                              "distance of the subject (mm), or inf")
                             ->default_str("distance and film of the file");
-  examples::add_focus(app, options.focus);
+  examples::add_focus(app, options.setup.focus);
   examples::add_film_choice(app, options.film, "file; with --at focus");
   examples::add_coatings(app, options.coatings, "the coatings of the file; if it states none, losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");

@@ -29,13 +29,11 @@ using examples::Json;
 constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
-  petzval::LensSource lens_file;
+  examples::CameraFlags setup;
   std::string out_folder, film = "focus";
-  bool film_given = false;
   std::vector<double> field_deg, wavelengths_nm;  // empty: the fields and wavelengths of the file
-  double subject_mm = 0, defocus_mm = 0, f_number = 0;
-  bool subject_given = false;
-  petzval::FocusOptions focus;
+  double subject_mm = 0, defocus_mm = 0;
+  bool film_given = false, subject_given = false;
   std::uint32_t samples = 4096;
   examples::Output output;
 };
@@ -52,7 +50,7 @@ struct Setting {
 };
 
 Setting setting_of(const Options& options) {
-  examples::LensFile file = examples::read_lens(options.lens_file);
+  examples::LensFile file = examples::read_lens(options.setup.lens);
   examples::ReportLight light;
   if (options.wavelengths_nm.empty()) {
     light = examples::light_of(file);
@@ -62,13 +60,13 @@ Setting setting_of(const Options& options) {
   }
   const std::optional<double> primary = light.of_file ? std::optional(light.primary_nm) : std::nullopt;
   examples::LoadedLens loaded = examples::compiled(std::move(file), light.wavelengths_nm, primary);
-  petzval::FocusOptions focus = options.focus;
+  petzval::FocusOptions focus = options.setup.focus;
   double subject_mm = options.subject_mm;
   if (!options.subject_given) {
     focus.origin = petzval::DistanceOrigin::front_vertex;
     subject_mm = loaded.prescription.design.object_distance_mm;
   }
-  petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
+  petzval::Lens lens = examples::stopped_down(loaded.lens, options.setup);
   bool film_of_file = options.film == "file";
   if (!film_of_file) try {
       lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus); });
@@ -118,7 +116,6 @@ std::string hits_csv(const std::vector<petzval::Spot>& all, const Setting& setti
 }
 
 Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, const Options& options) {
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
@@ -126,8 +123,8 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
     rows.push_back({{"field_deg", field_deg(setting, i)},
                     {"wavelength_nm", setting.light.wavelengths_nm[spot.wavelength]},
                     {"wavelength_weight", setting.light.weights[spot.wavelength]},
-                    {"chief_ray_height_mm", or_null(spot.chief_ray_height)},
-                    {"relative_illumination", or_null(spot.relative_illumination)},
+                    {"chief_ray_height_mm", examples::or_null(spot.chief_ray_height)},
+                    {"relative_illumination", examples::or_null(spot.relative_illumination)},
                     {"rms_radius_mm", empty ? Json(nullptr) : Json(spot.size.rms_radius)},
                     {"max_radius_mm", empty ? Json(nullptr) : Json(spot.size.max_radius)},
                     {"reference", "centroid"},
@@ -135,7 +132,7 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
                     {"rays_transmitted", spot.x.size()},
                     {"film_z_mm", setting.lens.film_z()},
                     {"film", setting.film_of_file ? "file" : "focus"},
-                    {"criterion", setting.film_of_file ? Json() : Json(petzval::name(options.focus.criterion))},
+                    {"criterion", setting.film_of_file ? Json() : Json(petzval::name(options.setup.focus.criterion))},
                     {"subject_distance_mm", examples::finite_or_null(setting.subject_mm)},
                     {"distance_from", petzval::name(setting.origin)},
                     {"dispersion", petzval::name(setting.lens.dispersion())}});
@@ -157,19 +154,17 @@ int commands::spots(int argc, char** argv) {
       "of the chief ray, the illumination of the film relative to the axis, and the RMS and maximum radius about the "
       "centroid; values are null if no ray passes.",
       "petzval spots");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.setup.lens);
   examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
       ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
   examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm, "wavelengths")
       ->default_str("wavelengths of the file, with their weights, else F, d and C");
-  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "f-number to stop the lens down to (by exact rays)")
-      ->default_str("wide open");
+  examples::add_f_number(app, options.setup);
   auto* subject = examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
                                        "distance of the subject (mm), or inf")
                       ->default_str("subject of the file");
-  examples::add_focus(app, options.focus);
+  examples::add_focus(app, options.setup.focus);
   const auto* film = examples::add_film_choice(app, options.film, options.film);
   examples::add_length(app, "--defocus", options.defocus_mm, film_shift,
                        "shift of the film away from the lens (mm), -1000000 to 1000000");

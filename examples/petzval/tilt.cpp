@@ -91,6 +91,14 @@ std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
   return result;
 }
 
+/// Keeps the blurs of targets().
+void keep(const std::vector<petzval::TargetBlur>& blurs, Result& result, double Point::*blur_mm) {
+  auto next = blurs.begin();
+  for (Point& p : result.points) {
+    if (p.in_picture) p.status = next->status, p.*blur_mm = next->blur_mm, ++next;
+  }
+}
+
 /// Throws with the reason why the first unusable point cannot be used.
 [[noreturn]] void give_up(const Options& options, const std::vector<Point>& points) {
   const auto first = std::ranges::find_if_not(points, &Point::serves);
@@ -110,12 +118,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
   const petzval::Autofocus focus = result.lens.exact ? petzval::autofocus(*result.lens.lens, served, result.lens.film,
                                                                           petzval::FocusCriterion::min_rms, rays_to_fit)
                                                      : petzval::autofocus(result.lens.ideal, served, result.lens.film);
-  std::size_t k = 0;
-  for (Point& p : result.points) {
-    if (!p.in_picture) continue;
-    p.status = focus.blurs[k].status;
-    p.before_mm = focus.blurs[k++].blur_mm;
-  }
+  keep(focus.blurs, result, &Point::before_mm);
   if (focus.status == petzval::AutofocusStatus::no_targets) give_up(options, result.points);
   if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens can focus on these points");
   return focus;
@@ -151,12 +154,7 @@ Result solve(const Options& options) {
                                    : petzval::fit_tilt(result.lens.ideal, served, tilt);
   result.after.film.width_mm = result.before.film.width_mm;
   result.after.film.height_mm = result.before.film.height_mm;
-  std::size_t k = 0;
-  for (Point& p : result.points) {
-    if (!p.in_picture) continue;
-    p.status = result.after.blurs[k].status;
-    p.predicted_mm = result.after.blurs[k++].blur_mm;
-  }
+  keep(result.after.blurs, result, &Point::predicted_mm);
   switch (result.after.status) {
     case petzval::TiltFitStatus::no_targets:
       if (result.points.empty()) break;

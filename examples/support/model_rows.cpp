@@ -18,9 +18,6 @@
 namespace examples {
 namespace {
 
-constexpr Range pixel_count{1, 1e6, "a whole number from 1 to 1000000"};
-constexpr std::uint32_t usual_columns = 3840;
-
 /// Calls use(name, value) for the numbers of a row, in the order of JSON and CSV.
 template <class Use>
 void for_numbers(const ModelRow& row, Use use) {
@@ -38,22 +35,10 @@ void for_numbers(const ModelRow& row, Use use) {
 
 }  // namespace
 
-petzval::Film ModelOptions::film() const {
-  if (resolution.empty()) return setup.sized_film(0, 0, usual_columns);
-  const auto [columns, rows] = parse_size("--size", resolution, pixel_count);
-  if (columns != std::floor(columns) || rows != std::floor(rows)) {
-    throw petzval::Error("--size = \"" + resolution + "\"; must be two whole numbers");
-  }
-  return setup.sized_film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
-}
-
 void add_model_options(App& app, ModelOptions& options) {
   add_lens(app, options.setup.lens);
   add_camera(app, options.setup);
-  app.add_option("--size", options.resolution,
-                 "pixels across and down; without --film the film takes their shape within 36 x 24 mm")
-      ->type_name("WxH")
-      ->default_str("3840 across, square");
+  add_picture_size(app, options.columns, options.rows, 3840);
   app.add_flag("--json", options.json, "print JSON");
 }
 

@@ -17,11 +17,10 @@ namespace examples {
 /// Command line of the programs that compare models.
 struct ModelOptions {
   CameraFlags setup;
-  std::string resolution{};  ///< empty: not given
+  std::uint32_t columns = 0, rows = 0;  ///< 0: not given
   bool json = false;
 
-  /// @throws petzval::Error if --film or --size is invalid
-  petzval::Film film() const;
+  petzval::Film film() const { return setup.sized_film(columns, rows, 3840); }
 };
 void add_model_options(App& app, ModelOptions& options);
 

@@ -21,9 +21,7 @@ void add_movement_options(App& app, MovementOptions& options) {
       ->one_of({"thin", "thick", "real"})
       ->default_str("real");
   add_thin_lens(app, options.setup.lens.thin_mm);
-  add_number(app, "--f-number", options.setup.f_number, positive_number,
-             "f-number to stop the lens down to (by exact rays)")
-      ->default_str("wide open");
+  add_f_number(app, options.setup);
   add_film(app, options.setup, "width and height of the film (mm); if given, points outside the picture are ignored");
 }
 
@@ -50,8 +48,7 @@ MovingLens moving_lens(const MovementOptions& options) {
     throw petzval::Error("LENS is required, or --thin-lens F --f-number N");
   }
   const LoadedLens loaded = load_lens(source, std::array{petzval::d_line_nm});
-  petzval::Lens lens = loaded.lens;
-  if (f_number) lens = stopped_to(lens, *f_number);
+  petzval::Lens lens = stopped_down(loaded.lens, options.setup);
   result.id = loaded.id;
   result.title = lens.name();
   result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model_name() + " model";

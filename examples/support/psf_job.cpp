@@ -86,9 +86,8 @@ petzval::Rgb8Image picture(const petzval::PsfKernel& kernel) {
 /// Fields by distances, at the wavelength nearest to the d line and the largest stop.
 Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& parts) {
   const auto& axes = job.axes();
-  const double nm = *std::min_element(axes.wavelengths_nm.begin(), axes.wavelengths_nm.end(), [](double a, double b) {
-    return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
-  });
+  const double nm =
+      *std::ranges::min_element(axes.wavelengths_nm, {}, [](double a) { return std::abs(a - petzval::d_line_nm); });
   Sheet sheet{
       .title = "PSFs of " + job.description().at("lens").get<std::string>(),
       .rows = {},

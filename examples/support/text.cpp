@@ -11,7 +11,7 @@ namespace {
 /// The digits that std::to_chars writes. The buffer is large enough for every number.
 template <class... Format>
 std::string digits(double value, Format... format) {
-  std::array<char, 64> buffer;
+  std::array<char, 400> buffer;
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...).ptr};
 }
 
@@ -22,6 +22,8 @@ std::string number(double value) { return digits(value); }
 std::string number(double value, int significant_digits) {
   return digits(value, std::chars_format::general, significant_digits);
 }
+
+std::string fixed(double value, int decimals) { return digits(value, std::chars_format::fixed, decimals); }
 
 std::string comment_text(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {

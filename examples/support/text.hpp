@@ -13,6 +13,9 @@ std::string number(double value);
 /// The number rounded to a count of significant digits.
 std::string number(double value, int significant_digits);
 
+/// The number with a count of decimals.
+std::string fixed(double value, int decimals);
+
 /// A text for a comment of a source file: on one line, without the marks of C comments.
 std::string comment_text(std::string text);
 

@@ -58,7 +58,7 @@ void replay(const ReplayOptions& options) {
       ++refused;
     }
     const bool still = error.empty() && event["type"] == "still";
-    const double event_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double event_ms = examples::ms_since(start);
     double layers_ms = 0;
     Frame frame;
     try {
