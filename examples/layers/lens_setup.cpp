@@ -79,12 +79,13 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
              if (count != std::floor(count)) throw Error("--rays = " + number(count) + "; must be " + rays.words);
              flags.ray_counts.push_back(static_cast<std::uint32_t>(count));
            }
-           flags.rays = flags.ray_counts.back();
+           flags.pattern.rays = flags.ray_counts.back();
          },
          "rays through the lens per pixel of the picture; several numbers with --compare-rays")
       ->type_name("N,...")
       ->default_str("256; 512 for LENS and --singlet with --jitter");
-  app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
+  app.add_flag("--jitter", flags.pattern.jitter,
+               "16 sets of rays, alternating over the pixels: grain instead of patterns");
   app.add_option(
          "--wavelengths", flags.wavelengths,
          "wavelengths of the rays; d: the d line; rgb: separate rays for red, green and blue, at 650, 510 and 475 nm")
@@ -176,11 +177,10 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
       keyed_(keyed),
       unfocused_(lens_of(flags_)),
       view_(view_of(flags_, unfocused_, *flags.setup.focus_mm, columns, rows, angle_of(flags_))),
-      pattern_{flags.rays, flags.supersample, flags.jitter, flags.over_pixels},
-      layers_(view_.layers(flags.supersample)) {
-  if (flags.rays == 0) {
-    pattern_.rays = view_.thin() ? 256 : 512;
-    pattern_.jitter = flags.jitter || !view_.thin();
+      layers_(view_.layers(flags.pattern.supersample)) {
+  if (flags.pattern.rays == 0) {
+    flags_.pattern.rays = view_.thin() ? 256 : 512;
+    flags_.pattern.jitter = flags.pattern.jitter || !view_.thin();
   }
   if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.setup.film);
   if (keyed_ && !flags.setup.points_file.empty()) points_ = examples::read_focus_points(flags.setup.points_file);
@@ -198,7 +198,7 @@ void BlurLens::focus_at(double focus_mm, bool keep_film) {
   view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, view_.vertical_angle_rad,
                   keep_film ? film.height_mm : 0);
   view_.surface = surface_at(0);
-  layers_ = view_.layers(flags_.supersample);
+  layers_ = view_.layers(flags_.pattern.supersample);
 }
 
 petzval::CameraSetup BlurLens::setup() const {
@@ -231,7 +231,7 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   if (keyed_) view_.surface = surface_at(time);
-  return view_.rays(layers_, pattern_, nearest_mm, threads);
+  return view_.rays(layers_, flags_.pattern, nearest_mm, threads);
 }
 
 }  // namespace lens_blur

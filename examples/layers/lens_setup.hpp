@@ -24,13 +24,10 @@ struct LensFlags {
   examples::CameraFlags setup;
   std::string singlet;
   double fov_deg = 0;
-  std::uint32_t rays = 0;  ///< 0: 256, or 512 for traced surfaces with jitter
-  /// Numbers of rays that are compared with each other; `rays` is the last. Empty if --rays is not given.
+  RayPattern pattern{.rays = 0};  ///< 0 rays: 256, or 512 for traced surfaces with jitter
+  /// Numbers of rays that are compared with each other; the pattern has the last. Empty if --rays is not given.
   std::vector<std::uint32_t> ray_counts;
-  std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
-  bool over_pixels = false;       ///< as RayPattern
-  std::string wavelengths;        ///< "d" or "rgb"; empty: as in --setup, else "d"
-  bool jitter = false;
+  std::string wavelengths;  ///< "d" or "rgb"; empty: as in --setup, else "d"
 
   bool thin() const noexcept { return setup.lens.thin_mm > 0; }
   /// True if the colours have rays of their own.
@@ -60,8 +57,8 @@ class BlurLens {
   /// Focuses at another distance. keep_film: the film keeps its size, otherwise the picture keeps its angle (--fov).
   void focus_at(double focus_mm, bool keep_film);
   /// Changes the number of rays per pixel.
-  void set_rays(std::uint32_t rays) noexcept { pattern_.rays = rays; }
-  std::uint32_t ray_count() const noexcept { return pattern_.rays; }
+  void set_rays(std::uint32_t rays) noexcept { flags_.pattern.rays = rays; }
+  std::uint32_t ray_count() const noexcept { return flags_.pattern.rays; }
   /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
 
@@ -73,7 +70,6 @@ class BlurLens {
   bool keyed_;
   petzval::Lens unfocused_;
   LensView view_;
-  RayPattern pattern_;
   petzval::LayerCamera layers_;
   std::vector<petzval::FocusPoint> points_;
 };

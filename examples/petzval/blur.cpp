@@ -73,7 +73,7 @@ RgbImage missed_of(const petzval::BlurredImage& picture) {
 }
 
 lens_blur::LensFlags for_pixels(lens_blur::LensFlags flags, int side, bool of_file) {
-  flags.supersample = static_cast<std::uint32_t>(side), flags.over_pixels = of_file;
+  flags.pattern.supersample = static_cast<std::uint32_t>(side), flags.pattern.over_pixels = of_file;
   return flags;
 }
 

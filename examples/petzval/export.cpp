@@ -35,7 +35,6 @@ using json = examples::Json;
 
 struct Options {
   std::string calibration, ray_map, camera;
-  petzval::ModelKind model{};
   bool all = false;
   std::uint32_t lens_samples = 16;
   bool half = false;
@@ -99,7 +98,7 @@ std::string title_of(const examples::LoadedLens& loaded, const petzval::Film& fi
 }
 
 petzval::Camera table_camera(const Options& options, const petzval::Lens& lens, const petzval::Film& film) {
-  return petzval::Camera(lens, film, {.model = options.model, .threads = examples::threads()});
+  return petzval::Camera(lens, film, {.model = options.setup.camera.model, .threads = examples::threads()});
 }
 
 /// Writes the table of a camera and returns its report.
@@ -265,8 +264,7 @@ int commands::export_camera(int argc, char** argv) {
   app.add_flag("--half", options.half, "values of the ray map are 16-bit floats")->needs(map);
   examples::add_camera(app, options.setup);
   examples::add_picture_size(app, options.columns, options.rows, 1920);
-  options.model = petzval::ModelKind::exact_float;
-  examples::add_model(app, options.model)->needs(camera);
+  examples::add_model(app, options.setup.camera.model)->needs(camera);
   app.add_option("--wavelengths", options.wavelengths,
                  "wavelengths of the table (default d) and of the lateral colour (default F,d,C), in nm or as spectral "
                  "lines")

@@ -62,7 +62,7 @@ double focus_of(const LensRays& rays, int channel, int column, int row) {
 
 TEST(BlurLens, BlursAPointIntoADiscOfTheFormula) {
   LensFlags flags = thin_lens();
-  flags.fov_deg = 40, flags.rays = 1000;
+  flags.fov_deg = 40, flags.pattern.rays = 1000;
   const LensRays rays = lens_of(flags).rays(1000, 1);
   for (const double depth : {1500.0, 5000.0, 20000.0}) {
     const double radius = std::abs(1 / depth - 1 / 5000.0) * 50 * 30 / std::tan(petzval::radians(20.0));
