@@ -135,8 +135,13 @@ void add_film(App& app, CameraFlags& flags, const std::string& help) {
   app.add_option(
          "--film",
          [&flags](const std::string& text) {
-           const auto [width, height] = parse_size("--film", text, film_side);
-           flags.film.width_mm = width, flags.film.height_mm = height;
+           constexpr Range side{std::numeric_limits<double>::min(), 1e6, "a length above 0, at most 1e6 mm"};
+           const std::size_t x = text.find('x');
+           if (x == text.npos) {
+             throw petzval::Error("--film = \"" + text.substr(0, 60) + "\"; must be a size like 36x24");
+           }
+           const double width = flags.film.width_mm = parse_length("--film", text.substr(0, x), side);
+           const double height = flags.film.height_mm = parse_length("--film", text.substr(x + 1), side);
            flags.film_given = true;
            const double rows = std::round(flags.film.columns * height / width);
            if (flags.pixels_given) flags.film.rows = static_cast<int>(std::clamp(rows, 1.0, 16384.0));
@@ -279,15 +284,6 @@ Option* add_model(App& app, petzval::ModelKind& model) {
       ->default_str(std::string(petzval::name(model)));
 }
 
-std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range) {
-  const std::size_t x = text.find('x');
-  if (x == std::string_view::npos) {
-    throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be a size like 36x24");
-  }
-  const auto parse = where == "--film" ? parse_length : parse_number;
-  return {parse(where, text.substr(0, x), range), parse(where, text.substr(x + 1), range)};
-}
-
 namespace {
 
 /// The given f-number; if it is faster than the lens by at most 4 %, the f-number of the lens wide open.
@@ -319,10 +315,6 @@ petzval::CameraSetup CameraFlags::used_with(const petzval::Lens& compiled) const
   return result;
 }
 
-petzval::Lens stopped_to(const petzval::Lens& lens, double f_number) {
-  return for_flag("--f-number", [&] { return petzval::with_f_number(lens, reachable(lens, f_number)); });
-}
-
 petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags) {
   const petzval::Iris& iris = flags.iris;
   if (iris.blades == 0) {
@@ -337,7 +329,10 @@ petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags) 
     throw petzval::Error("--iris-area = equal with --thin-lens; must be circumscribed");
   }
   const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, iris); });
-  if (flags.f_number && flags.lens.thin_mm == 0) return stopped_to(shaped, corner_f_number(flags));
+  if (flags.f_number && flags.lens.thin_mm == 0) {
+    return for_flag("--f-number",
+                    [&] { return petzval::with_f_number(shaped, reachable(shaped, corner_f_number(flags))); });
+  }
   if (flags.iris_area == "equal" && !iris.round() && !flags.f_number) {
     throw petzval::Error("--iris-area = equal needs --f-number: wide open, blades cannot open further");
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,9 +14,6 @@
 #include "petzval/lens/lens.hpp"
 
 namespace examples {
-
-/// Width or height of a film, mm.
-inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a length above 0, at most 1e6 mm"};
 
 /// The set-up of a camera by the flags of a command line.
 struct CameraFlags : petzval::CameraSetup {
@@ -75,14 +71,8 @@ void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std
 /// Adds --model.
 Option* add_model(App& app, petzval::ModelKind& model);
 
-/// Parses a size like "36x24"; parts of --film may have units. @throws petzval::Error that begins with `where`, if the
-/// text is not a size
-std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
-
-/// Applies petzval::with_f_number for the f-number of a command line. Lens names are rounded: if the f-number is faster
-/// than the lens by at most 4 %, the lens opens fully and a note on standard error gives the true f-number.
-petzval::Lens stopped_to(const petzval::Lens& lens, double f_number);
-/// The lens with the iris, stopped down unless it is a thin lens of the flags.
+/// The lens with the iris, stopped down unless it is a thin lens of the flags. Lens names are rounded: if the f-number
+/// is faster than the lens by at most 4 %, the lens opens fully and a note on standard error gives the true f-number.
 /// @throws petzval::Error if the lens cannot have the iris or the f-number
 petzval::Lens stopped_down(const petzval::Lens& lens, const CameraFlags& flags);
 /// The loaded lens, stopped down and focused at its primary wavelength.
