@@ -12,7 +12,7 @@
 #include "petzval/analysis/colour.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/image/psf_image.hpp"
+#include "petzval/image/psf.hpp"
 #include "petzval/petzval.hpp"
 
 namespace {

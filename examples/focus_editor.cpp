@@ -9,7 +9,7 @@
 
 #include "petzval/core/geometry.hpp"
 #include "petzval/editor/focus_editor.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 
 namespace {

@@ -5,7 +5,6 @@
 #include <exception>
 #include <vector>
 
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/geometry.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "petzval/analysis/spot.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/petzval.hpp"
 
 int main(int argc, char** argv) try {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/petzval.hpp"
 

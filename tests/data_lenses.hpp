@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 
 namespace petzval::testing {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "layers/layer_input.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/image/image.hpp"

@@ -8,7 +8,7 @@
 
 #include "layers/lens_view.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "renderer/scene_description.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"

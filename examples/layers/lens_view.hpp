@@ -8,9 +8,10 @@
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace lens_blur {

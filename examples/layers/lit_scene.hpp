@@ -10,7 +10,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/image/image.hpp"
 #include "renderer/scene_description.hpp"
 

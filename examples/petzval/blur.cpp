@@ -22,7 +22,7 @@
 #include "layers/lens_setup.hpp"
 #include "layers/lit_scene.hpp"
 #include "layers/picture_quality.hpp"
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/image/image.hpp"

@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/image/psf_image.hpp"
+#include "petzval/image/psf.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"

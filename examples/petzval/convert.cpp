@@ -23,7 +23,7 @@
 #include "petzval/exports/renderer_cameras.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/image/exr.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"

@@ -12,7 +12,7 @@
 
 #include "commands.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

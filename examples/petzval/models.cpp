@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "petzval/core/parallel.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

@@ -16,11 +16,10 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/focus_point.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/focus_points.hpp"

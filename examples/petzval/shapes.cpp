@@ -15,7 +15,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"

@@ -20,7 +20,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "renderer/highlights.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"

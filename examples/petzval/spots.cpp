@@ -12,7 +12,7 @@
 
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/focus/focus.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"

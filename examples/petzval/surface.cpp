@@ -17,7 +17,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/image/image.hpp"
 #include "petzval/lens/wavelength.hpp"

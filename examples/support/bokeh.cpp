@@ -14,7 +14,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/image/psf_image.hpp"
+#include "petzval/image/psf.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "text.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 
 namespace examples {
 

@@ -9,7 +9,7 @@
 #include "cli.hpp"
 #include "files.hpp"
 #include "json_input.hpp"
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"

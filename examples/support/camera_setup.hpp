@@ -8,9 +8,9 @@
 #include "cli.hpp"
 #include "focus_pull.hpp"
 #include "load_lens.hpp"
-#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace examples {

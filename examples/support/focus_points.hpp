@@ -10,7 +10,7 @@
 #include "cli.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 
 namespace examples {
 

@@ -15,8 +15,7 @@
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/figure/focus_figures.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/focus/focus.hpp"
 #include "text.hpp"
 

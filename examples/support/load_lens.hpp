@@ -8,7 +8,7 @@
 
 #include "cli.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 

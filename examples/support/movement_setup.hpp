@@ -9,7 +9,7 @@
 #include "camera_setup.hpp"
 #include "cli.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

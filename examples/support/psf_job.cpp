@@ -13,7 +13,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/image/exr.hpp"
+#include "petzval/image/psf.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "files.hpp"
-#include "petzval/analysis/psf_set.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/image/image.hpp"
 #include "shard.hpp"
 

@@ -13,8 +13,8 @@
 
 #include "layers/layer_input.hpp"
 #include "layers/lens_view.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/editor/focus_editor.hpp"
 #include "petzval/image/image.hpp"
 #include "support/files.hpp"

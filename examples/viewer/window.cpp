@@ -21,7 +21,7 @@
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "support/files.hpp"
 #include "support/interrupt.hpp"

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "petzval/analysis/psf_set.hpp"
+#include "petzval/analysis/psf.hpp"
 
 namespace petzval::analysis_detail {
 

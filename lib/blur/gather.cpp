@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 
 #include <algorithm>
 #include <atomic>

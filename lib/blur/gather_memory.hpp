@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gather_loops.hpp"
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 
 namespace petzval {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/config.hpp"
 
 namespace petzval::blur_detail {

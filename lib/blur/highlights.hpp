@@ -7,7 +7,7 @@
 
 #include "gather_loops.hpp"
 #include "layer_data.hpp"
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "ray_table.hpp"
 
 namespace petzval::blur_detail {

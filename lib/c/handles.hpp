@@ -19,7 +19,7 @@
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/petzval.h"
 

@@ -11,7 +11,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/formats/lens_file.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"

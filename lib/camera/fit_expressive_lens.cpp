@@ -8,7 +8,7 @@
 #include "core/meet_plane.hpp"
 #include "local_focus.hpp"
 #include "paraxial_model.hpp"
-#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"

@@ -6,7 +6,7 @@
 
 #include "camera/ray_model.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/config.hpp"
 
 namespace petzval::camera_detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/bokeh.hpp"
 
 namespace petzval::camera_detail {
 

@@ -9,7 +9,6 @@
 
 #include "core/dual.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/model_kind.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"

@@ -6,7 +6,7 @@
 
 #include "core/dual.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "pupil_table/film_pupil_table.hpp"

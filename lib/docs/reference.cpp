@@ -12,15 +12,14 @@
 #include <vector>
 
 #include "petzval/analysis/choose_model.hpp"
-#include "petzval/analysis/psf_set.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/analysis/spot.hpp"
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/exports/distortion.hpp"
 #include "petzval/exports/lens_metadata.hpp"
-#include "petzval/figure/focus_figures.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/formats/lens_file.hpp"
-#include "petzval/image/exr.hpp"
+#include "petzval/image/psf.hpp"
 #include "petzval/petzval.hpp"
 
 namespace {

@@ -11,9 +11,9 @@
 
 #include "petzval/core/geometry.hpp"
 #include "petzval/editor/focus_editor.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/focus_point.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::editor_detail {

@@ -9,7 +9,7 @@
 #include "core/text.hpp"
 #include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "scene_panel.hpp"
 
 namespace petzval {

@@ -13,7 +13,7 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {

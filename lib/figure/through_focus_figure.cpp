@@ -9,7 +9,7 @@
 #include "core/text.hpp"
 #include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {

@@ -12,7 +12,7 @@
 #include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 
 namespace petzval {
 namespace {

@@ -10,7 +10,7 @@
 #include "focus/plane_fit.hpp"
 #include "focus/targets.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::fit_detail {

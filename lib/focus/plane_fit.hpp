@@ -6,7 +6,7 @@
 
 #include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::focus_detail {

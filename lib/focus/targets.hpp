@@ -8,7 +8,7 @@
 #include <string>
 
 #include "petzval/core/config.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 
 namespace petzval::focus_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/psf_image.hpp"
+#include "petzval/image/psf.hpp"
 
 #include <algorithm>
 #include <string>

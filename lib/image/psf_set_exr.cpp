@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/exr.hpp"
+#include "petzval/image/psf.hpp"
 
 #include <array>
 #include <bit>

@@ -8,7 +8,7 @@
 #include "json_members.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 
 namespace petzval {

@@ -7,7 +7,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/analysis/transmittance.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 
 namespace petzval {
 namespace coating_json_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/psf_set.hpp"
+#include "petzval/analysis/psf.hpp"
 
 #include <gtest/gtest.h>
 

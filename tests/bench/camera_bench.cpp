@@ -30,7 +30,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "table.hpp"

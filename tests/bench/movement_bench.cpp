@@ -14,8 +14,8 @@
 #include "fit/fit_to_rays.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
-#include "petzval/focus/focus_point.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/focus/autofocus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "table.hpp"
 

@@ -14,7 +14,7 @@
 #include "analysis/histogram.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"

@@ -10,7 +10,7 @@
 
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"

@@ -16,7 +16,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/unit_tracer.hpp"

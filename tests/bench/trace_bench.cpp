@@ -23,7 +23,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
 #include "trace_report.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,6 @@
 #include "../expect_error.hpp"
 #include "blur/gather_method.hpp"
 #include "petzval/blur/layers.hpp"
-#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "reference_gather.hpp"

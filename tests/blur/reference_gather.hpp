@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 
 namespace petzval::testing {
 

@@ -16,7 +16,7 @@
 #include "petzval/analysis/report.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/petzval.h"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"

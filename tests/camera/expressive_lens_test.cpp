@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/bokeh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "petzval/camera/bokeh.hpp"
-#include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"

@@ -9,7 +9,7 @@
 
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "program.hpp"
 

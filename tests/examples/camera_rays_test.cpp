@@ -5,6 +5,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "program.hpp"

@@ -6,6 +6,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

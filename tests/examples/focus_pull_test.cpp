@@ -5,7 +5,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

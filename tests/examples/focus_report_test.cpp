@@ -6,6 +6,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/json.hpp"
 #include "program.hpp"
 
 namespace {

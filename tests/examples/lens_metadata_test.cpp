@@ -4,6 +4,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/io/json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 
 #include "petzval/analysis/report.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"

@@ -11,6 +11,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "program.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "petzval/image/exr.hpp"
+#include "petzval/image/psf.hpp"
 #include "program.hpp"
 
 namespace {

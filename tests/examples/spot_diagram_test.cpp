@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"

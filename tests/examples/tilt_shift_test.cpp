@@ -7,6 +7,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

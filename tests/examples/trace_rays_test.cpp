@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../data_lenses.hpp"
+#include "petzval/io/json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "../data_lenses.hpp"
 #include "allocations.hpp"
 #include "petzval/analysis/colour.hpp"
-#include "petzval/analysis/psf_set.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"

@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {

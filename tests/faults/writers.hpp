@@ -11,10 +11,11 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/files.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/image/psf.hpp"
+#include "petzval/io/json.hpp"
 
 namespace petzval::testing {
 

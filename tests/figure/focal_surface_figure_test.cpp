@@ -9,7 +9,7 @@
 
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

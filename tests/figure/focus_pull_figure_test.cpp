@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/figures.hpp"
 
 #include <gtest/gtest.h>
 

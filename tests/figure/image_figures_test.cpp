@@ -15,7 +15,7 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 
 #include <gtest/gtest.h>
 

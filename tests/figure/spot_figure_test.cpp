@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/lens_figures.hpp"
+#include "petzval/figure/figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/io/json.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "lens_text.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 

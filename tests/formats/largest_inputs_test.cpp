@@ -14,7 +14,7 @@
 #include "../report.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/formats/lens_file.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/apertures.hpp"
 
 namespace petzval {

@@ -12,7 +12,7 @@
 
 #include "../expect_error.hpp"
 #include "lens_text.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 

@@ -3,6 +3,7 @@
 #include "petzval/blur/layers.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/image/psf.hpp"
 
 #include <string>
 

@@ -2,6 +2,7 @@
 // Images of a few pixels, written by the library.
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/image/psf.hpp"
 #include "scratch_file.hpp"
 #include "seeds.hpp"
 

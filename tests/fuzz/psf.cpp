@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "laws.hpp"
-#include "petzval/analysis/psf_set.hpp"
 #include "wild_lens.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

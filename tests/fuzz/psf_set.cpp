@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts of PSF sets with changed entries: a kernel keeps every bit, or the part is refused.
-#include "petzval/image/exr.hpp"
+#include "petzval/image/psf.hpp"
 
 #include <string>
 #include <utility>

@@ -11,7 +11,7 @@
 #include "laws.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/petzval.h"
 
 namespace petzval::fuzz {

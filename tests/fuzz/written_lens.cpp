@@ -5,7 +5,7 @@
 #include "laws.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/io/lint.hpp"
 #include "wild_lens.hpp"
 

@@ -17,6 +17,7 @@
 #include "petzval/glass/glass.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
+#include "petzval/image/psf.hpp"
 
 namespace petzval {
 namespace endless_files_test {

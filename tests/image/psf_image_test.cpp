@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/psf_image.hpp"
+#include "petzval/image/psf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "../expect_error.hpp"
-#include "petzval/blur/gather.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/geometry.hpp"
 #include "renderer/sky_light.hpp"
 

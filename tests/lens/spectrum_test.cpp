@@ -14,7 +14,7 @@
 #include "../expect_error.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 

@@ -21,7 +21,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 

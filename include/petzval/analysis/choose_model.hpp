@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus.hpp"

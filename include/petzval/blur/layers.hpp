@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "petzval/core/config.hpp"
-#include "petzval/core/fragment_lists.hpp"
 #include "petzval/core/geometry.hpp"
 
 namespace petzval {
@@ -93,6 +92,20 @@ PETZVAL_API PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double f
 struct LayerPlanes {
   std::span<float> inverse_depth;            ///< 1/mm; 0: infinity; negative or NaN: empty
   std::span<float> red, green, blue, alpha;  ///< linear, unlimited, premultiplied by alpha
+};
+
+/// A deep image: a list of surface fragments for each pixel.
+///
+/// Pixel p has fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any order.
+struct FragmentLists {
+  /// One surface seen in a pixel.
+  struct Fragment {
+    float depth_mm = 0;                             ///< along the axis; infinity for the sky
+    float red = 0, green = 0, blue = 0, alpha = 1;  ///< premultiplied by alpha
+  };
+  int columns = 0, rows = 0;
+  std::vector<std::size_t> offsets;  ///< columns x rows + 1
+  std::vector<Fragment> fragments;
 };
 
 /// Converts distances from the pinhole to depths along the axis, in place. Invalid depths and infinity are kept.

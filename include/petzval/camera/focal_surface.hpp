@@ -12,7 +12,7 @@
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {

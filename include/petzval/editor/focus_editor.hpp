@@ -16,8 +16,8 @@
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/focus/focus_point.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/focus/autofocus.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval {

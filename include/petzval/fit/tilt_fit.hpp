@@ -9,8 +9,8 @@
 
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/focus_point.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

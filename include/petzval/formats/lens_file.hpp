@@ -8,7 +8,7 @@
 
 #include "petzval/core/config.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/io/camera_setup.hpp"
+#include "petzval/io/json.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval {
@@ -28,7 +28,7 @@ struct ReadOptions {
 
 /// Reads a lens from a file. The content of the file determines its format:
 ///
-///     petzval-lens 1        the library's own JSON (lens_json.hpp), read without assumptions
+///     petzval-lens 1        the library's own JSON (io/json.hpp), read without assumptions
 ///     zemax                 .zmx, sequential
 ///     codev                 .seq
 ///     oslo                  .len
