@@ -25,7 +25,7 @@ constexpr std::array wavelengths_nm{440.0, 470.0, 500.0, 530.0, 560.0, 590.0, 62
 /// The light: white, 3 m in front of the lens and 5 degrees above the axis.
 constexpr FieldPoint light{.field_rad = radians(5), .z = -3000};
 
-PointImage image_of(const Lens& lens, double half_width_mm) {
+Psf image_of(const Lens& lens, double half_width_mm) {
   return point_image(
       lens, light,
       {.samples = 1u << 18, .pixels = 256, .half_width_mm = half_width_mm, .threads = processor_threads()});
@@ -44,24 +44,24 @@ int main(int argc, char** argv) try {
 
   // The first image has the width of its blur, and sets the scale of both.
   const double half_width_mm = 1.2 * image_of(round, 0).size.max_radius;
-  const PointImage disc = image_of(round, half_width_mm), hexagon = image_of(blades, half_width_mm);
+  const Psf disc = image_of(round, half_width_mm), hexagon = image_of(blades, half_width_mm);
   std::printf("%s at f/%.1f, focused at 1 m, light at 3 m\n", round.name().c_str(), real_f_number(round));
   std::printf("blur diameter: %.3f mm round, %.3f mm with blades\n", 2 * disc.size.max_radius,
               2 * hexagon.size.max_radius);
   std::printf("light on the film relative to the paraxial entrance pupil: %.4f round, %.4f with blades\n",
-              disc.throughput, hexagon.throughput);
-  std::printf("ratio %.4f, area of the hexagon in its circle %.4f\n", hexagon.throughput / disc.throughput,
+              disc.mean_throughput, hexagon.mean_throughput);
+  std::printf("ratio %.4f, area of the hexagon in its circle %.4f\n", hexagon.mean_throughput / disc.mean_throughput,
               iris_area(blades.iris()) / iris_area(round.iris()));
 
   // Colours: the spectrum of daylight over the bands around the wavelengths, seen by the CIE observer.
   const std::filesystem::path tables = data_directory() / "glass";
   const Spectrum d65 = illuminant("D65", tables / "cie_daylight_10nm.csv");
   const auto weights = rgb_weights(wavelengths_nm, ColourMatching::load(tables / "cie1931_2deg_5nm.csv"), d65, d65);
-  const RgbImage disc_picture = render(disc.psf, weights), hexagon_picture = render(hexagon.psf, weights);
+  const RgbImage disc_picture = render(disc, weights), hexagon_picture = render(hexagon, weights);
 
   // Both pictures have the same exposure: the mean irradiance of the disc is a light grey.
   const double disc_area_mm2 = std::numbers::pi * disc.size.max_radius * disc.size.max_radius;
-  const float exposure = static_cast<float>(0.6 * disc_area_mm2 / disc.throughput);
+  const float exposure = static_cast<float>(0.6 * disc_area_mm2 / disc.mean_throughput);
   write_png(to_srgb8(disc_picture, exposure), folder / "bokeh_round.png");
   write_png(to_srgb8(hexagon_picture, exposure), folder / "bokeh_blades.png");
   write_exr(hexagon_picture, folder / "bokeh_blades.exr");  // linear, without exposure

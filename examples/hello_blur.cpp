@@ -36,7 +36,7 @@ int main() try {
                 static_cast<double>(picture.rgba[static_cast<std::size_t>(4 * (120 * picture.columns + column))]));
   }
   std::printf("\n%.1f %% of the rays hit surfaces that are not in the picture\n",
-              100 * static_cast<double>(picture.statistics.missed) / static_cast<double>(picture.statistics.rays));
+              100 * static_cast<double>(picture.missed_count) / static_cast<double>(picture.ray_count));
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());
   return 1;

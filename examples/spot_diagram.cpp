@@ -36,10 +36,10 @@ int main(int argc, char** argv) try {
   // The axis, 0.7 of the field and its edge. Half of the picture's area lies within 0.7 of the field.
   const double edge = declared_half_field(prescription, lens).value_or(radians(10));
   const std::array fields{0.0, 0.7 * edge, edge};
-  const std::vector<Spot> spots = spot_diagram(lens, -infinity, fields);
+  const Grid<Spot> spots = spot_diagram(lens, -infinity, fields);
 
   std::printf("field (deg)  line  RMS radius (um)  largest radius (um)  chief ray (mm)\n");
-  for (const Spot& spot : spots) {
+  for (const Spot& spot : spots.values) {
     std::printf("%11.1f  %4s  %15.2f  %19.2f  %14.4f\n", degrees(spot.point.field_rad), lines[spot.wavelength],
                 1e3 * spot.size.rms_radius, 1e3 * spot.size.max_radius, spot.chief_ray_height.value_or(NAN));
   }

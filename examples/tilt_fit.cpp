@@ -56,8 +56,6 @@ int main(int argc, char** argv) try {
                 1e3 * tilted.blurs[i].blur_mm);
   }
 
-  std::vector<TiltFigurePoint> points;
-  for (const FocusTarget& target : targets) points.push_back({.point = target.point});
   const std::string svg = tilt_figure({.title = lens.name(),
                                        .remark = "f/8, a table seen from above",
                                        .lens = thick_lens(lens),
@@ -65,7 +63,7 @@ int main(int argc, char** argv) try {
                                        .before = upright.film,
                                        .after = tilted.film,
                                        .focus = tilted.focus,
-                                       .points = points});
+                                       .points = targets});
   write_file(svg, folder / "tilt.svg");
   std::printf("%s\n", (folder / "tilt.svg").c_str());
 } catch (const petzval::Error& error) {

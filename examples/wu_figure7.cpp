@@ -33,7 +33,7 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
                                             {.samples = samples,
                                              .pixels = examples::tile_pixels(examples::wu_focus_mm.size()),
                                              .threads = examples::threads()});
-    row.tiles.push_back(examples::bokeh_tile(focus, image, examples::expose(examples::irradiance(image.psf))));
+    row.tiles.push_back(examples::bokeh_tile(focus, image, examples::expose(examples::irradiance(image))));
   }
   return row;
 }

@@ -26,9 +26,8 @@ using petzval::Error;
 using petzval::FragmentLists;
 
 const std::vector<float>* channel(const petzval::ExrPart& part, const std::string& name) {
-  const auto found =
-      std::find_if(part.channels.begin(), part.channels.end(), [&](const auto& c) { return c.name == name; });
-  return found == part.channels.end() ? nullptr : &found->values;
+  const auto found = part.channels.find(name);
+  return found == part.channels.end() ? nullptr : &found->second;
 }
 
 const std::vector<float>& required_channel(const petzval::ExrPart& part, const std::string& name,
@@ -55,8 +54,11 @@ std::vector<petzval::ExrPart> read_parts(const std::string& file) {
     if (kind == ".jpg" || kind == ".jpeg") return read_jpeg(file);
     throw Error("--image = " + file + "; must end in .exr, .jpg, .jpeg, .pfm or .png");
   }();
-  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"R", {}}, {"G", {}}, {"B", {}}}};
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) part.channels[i % 3].values.push_back(image.pixels[i]);
+  petzval::ExrPart part{.width = image.width, .height = image.height};
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<float>& values = part.channels[std::string(1, "RGB"[c])];
+    for (std::size_t i = c; i < image.pixels.size(); i += 3) values.push_back(image.pixels[i]);
+  }
   return {part};
 }
 
@@ -66,20 +68,21 @@ petzval::ExrPart read_values(const std::string& file) {
   const std::string kind = ending(file);
   if (kind == ".exr") {
     petzval::ExrPart part = petzval::read_exr_parts(file).front();
-    if (part.channels.size() > 1) part.channels = {{"Z", required_channel(part, "Z", file)}};
-    part.channels[0].name = "Z";
+    const bool single = part.channels.size() == 1;
+    part.channels = {{"Z", single ? part.channels.begin()->second : required_channel(part, "Z", file)}};
     return part;
   }
   if (kind != ".pfm" && kind != ".png") throw Error("--depth = " + file + "; must end in .exr, .pfm or .png");
   const petzval::RgbImage image = kind == ".pfm" ? petzval::read_pfm(file) : petzval::read_png(file);
-  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"Z", {}}}};
+  petzval::ExrPart part{.width = image.width, .height = image.height};
+  std::vector<float>& depths = part.channels["Z"];
   for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
     const float* const p = &image.pixels[i];
     if (std::memcmp(p, p + 1, 2 * sizeof(float)) != 0) throw Error(file + ": has colours; must be grey");
-    part.channels[0].values.push_back(*p);
+    depths.push_back(*p);
   }
   // Depths are not colours: without sRGB.
-  if (kind == ".png") part.channels[0].values = petzval::read_iris_map(file).values;
+  if (kind == ".png") depths = petzval::read_iris_map(file).values;
   return part;
 }
 
@@ -103,7 +106,7 @@ petzval::ExrPart read_depths(const InputFlags& flags) {
     return inverse ? 1 / mm : mm;
   };
   const double black = end(!white_is_near), white = end(white_is_near);
-  for (float& value : part.channels[0].values) {
+  for (float& value : part.channels.at("Z")) {
     double result = static_cast<double>(value);
     if (scaled) {
       if (!(result >= 0 && result <= 1)) {
@@ -243,8 +246,7 @@ void LayerInput::read_picture() {
                   "; must be the size of " + file + ", " + std::to_string(parts[0].width) + " x " +
                   std::to_string(parts[0].height));
     }
-    std::erase_if(parts[0].channels, [](const auto& c) { return c.name == "Z"; });
-    parts[0].channels.push_back(std::move(depths.channels[0]));
+    parts[0].channels["Z"] = std::move(depths.channels.at("Z"));
   }
   lists_ = {.columns = parts[0].width, .rows = parts[0].height, .offsets = {0}, .fragments = {}};
   struct Planes {

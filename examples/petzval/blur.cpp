@@ -177,7 +177,6 @@ class Job {
       write(lens_blur::averaged(missed_of(blurred_), side_), folder / "missed");
     }
 
-    const petzval::GatherStatistics& statistics = blurred_.statistics;
     Json json{{"lens", lens_.name()},
               {"columns", picture.width},
               {"rows", picture.height},
@@ -192,9 +191,9 @@ class Job {
               {"gather_ms", gather_ms},
               {"total_ms", peel_ms + n_buffer_ms + gather_ms},
               {"memory_mb", 1e-6 * static_cast<double>(layers_.memory_bytes())},
-              {"miss_rate", static_cast<double>(statistics.missed) / static_cast<double>(statistics.rays)},
+              {"miss_rate", static_cast<double>(blurred_.missed_count) / static_cast<double>(blurred_.ray_count)},
               {"highlights_above", threshold},
-              {"highlights", statistics.highlights},
+              {"highlights", blurred_.highlight_count},
               {"supersample", side_}};
     if (options_.lens.setup.points_file.empty()) json["focus_mm"] = examples::finite_or_null(focus_mm);
     if (options_.compare) compare(rays, picture, json);
@@ -291,7 +290,7 @@ class Job {
     const RgbImage reference = lens_blur::averaged(input_.scene()->reference(rays, threads_), side_);
     json["reference_ms"] = examples::ms_since(start);
     // Both trace the same number of rays.
-    const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.statistics.rays); };
+    const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.ray_count); };
     json["ns_per_ray"] = ns_per_ray(json["total_ms"].get<double>());
     json["reference_ns_per_ray"] = ns_per_ray(json["reference_ms"].get<double>());
     const lens_blur::Likeness all = lens_blur::likeness(picture, reference);

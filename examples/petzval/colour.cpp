@@ -94,7 +94,7 @@ void complete(Options& options, const examples::LoadedLens& loaded) {
 struct Picture {
   double field_deg = 0, focus_mm = 0, half_width_mm = 0;
   examples::BokehScene scene;
-  petzval::PointImage image;
+  petzval::Psf image;
 };
 
 /// The pictures with their lenses, not traced. @throws petzval::Error  if a focus is out of reach or a field is dark
@@ -143,8 +143,8 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
         if (p.field_deg != field) continue;
         std::vector<std::string> captions{examples::focus_caption(p.focus_mm)};
         if (!triple) captions.push_back("RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm");
-        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture, std::move(captions),
-                             picture_pixels * p.image.psf.pixel_mm});
+        row.tiles.push_back({examples::expose(petzval::render(p.image, weights)).picture, std::move(captions),
+                             picture_pixels * p.image.pixel_mm});
       }
       result.rows.push_back(std::move(row));
     }
@@ -267,18 +267,19 @@ int commands::colour(int argc, char** argv) {
         const auto name =
             loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
         const examples::Together uninterrupted;
-        petzval::ExrPart part = petzval::spectral_image(p.image.psf, weights);
+        petzval::ExrPart part = petzval::spectral_image(p.image, weights);
         part.texts.merge(examples::parameters());
         petzval::write_exr({&part, 1}, folder / name);
         options.output.file(folder / name);
-        json["pictures"].push_back({{"file", name},
-                                    {"field_deg", p.field_deg},
-                                    {"focus_mm", examples::finite_or_null(p.focus_mm)},
-                                    {"film_z_mm", p.scene.lens.film_z()},
-                                    {"throughput", p.image.throughput},
-                                    {"rms_radius_mm", p.image.throughput > 0 ? Json(p.image.size.rms_radius) : Json()},
-                                    {"picture_centre_mm", {p.image.psf.centre.x, p.image.psf.centre.y}},
-                                    {"picture_pixel_mm", p.image.psf.pixel_mm}});
+        json["pictures"].push_back(
+            {{"file", name},
+             {"field_deg", p.field_deg},
+             {"focus_mm", examples::finite_or_null(p.focus_mm)},
+             {"film_z_mm", p.scene.lens.film_z()},
+             {"throughput", p.image.mean_throughput},
+             {"rms_radius_mm", p.image.mean_throughput > 0 ? Json(p.image.size.rms_radius) : Json()},
+             {"picture_centre_mm", {p.image.centre.x, p.image.centre.y}},
+             {"picture_pixel_mm", p.image.pixel_mm}});
         examples::write_text(numbers, json.dump(1) + '\n');
       }
     }

@@ -225,9 +225,7 @@ bool convert(const Options& options) {
   }
   std::vector<ImportWarning> repairs;
   if (options.repair) {
-    petzval::RepairedPrescription repaired = petzval::repair(whole, &glasses);
-    whole = std::move(repaired.prescription);
-    repairs = std::move(repaired.changes);
+    repairs = petzval::repair(whole, &glasses);
     say("repaired", options.in.file, repairs);
   }
   whole = examples::with_matched_glasses(options.in, std::move(whole), glasses);

@@ -22,7 +22,7 @@ petzval::ExrPart texture(int width, int height, std::span<const float> texels, s
   for (std::size_t k = 0; k < 3; ++k) {
     std::vector<float> values(texels.size() / channels, 0.0f);
     for (std::size_t i = 0; k < channels && i < values.size(); ++i) values[i] = texels[i * channels + k];
-    part.channels.push_back({std::string(1, "RGB"[k]), std::move(values)});
+    part.channels[std::string(1, "RGB"[k])] = std::move(values);
   }
   return part;
 }
@@ -85,7 +85,7 @@ void write_ray_map(const petzval::RayMap& map, const petzval::Camera& camera, co
     petzval::ExrPart part{.name = "sample_" + std::to_string(s), .width = map.columns, .height = map.rows};
     for (std::size_t k = 0; k < names.size(); ++k) {
       const float* const values = map.channel(s, k);
-      part.channels.push_back({std::string(names[k]), std::vector<float>(values, values + pixels)});
+      part.channels[std::string(names[k])].assign(values, values + pixels);
     }
     part.pairs["lens_sample"] = {static_cast<float>(own.u), static_cast<float>(own.v)};
     if (s == 0) part.texts["ray_map"] = head_of(map, camera).dump();

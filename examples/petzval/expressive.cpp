@@ -87,8 +87,8 @@ class Highlights {
   Highlights(const petzval::Lens& lens, double light_mm, double origin_z, const Options& options)
       : lens_(lens), z_(origin_z - light_mm), samples_(options.samples) {}
 
-  petzval::PointImage image(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
-                            std::uint32_t samples) const {
+  petzval::Psf image(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
+                     std::uint32_t samples) const {
     const examples::BokehScene scene{lens_, {field_rad, z_}};
     return petzval::point_image(
         examples::camera_of(scene, camera), scene.light,
@@ -99,12 +99,12 @@ class Highlights {
   }
   examples::Tile tile(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
                       Json& described) const {
-    const petzval::PointImage found = image(field_rad, camera, half_width_mm, samples_);
+    const petzval::Psf found = image(field_rad, camera, half_width_mm, samples_);
     described["field_deg"] = petzval::degrees(field_rad);
     described["rms_mm"] = found.size.rms_radius;
-    return {examples::expose(examples::irradiance(found.psf)).picture,
+    return {examples::expose(examples::irradiance(found)).picture,
             {number(petzval::degrees(field_rad), 3) + " degrees",
-             found.throughput > 0 ? "RMS " + number(found.size.rms_radius, 3) + " mm" : "no light"},
+             found.mean_throughput > 0 ? "RMS " + number(found.size.rms_radius, 3) + " mm" : "no light"},
             2 * half_width_mm};
   }
 

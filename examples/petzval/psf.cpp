@@ -65,7 +65,7 @@ struct Picture {
   double field_deg = 0, focus_mm = 0;
   examples::BokehScene scene;
   std::optional<petzval::Camera> camera;
-  petzval::PointImage image;
+  petzval::Psf image;
   std::optional<petzval::DiffractionPsf> waves;  ///< with --diffraction
   examples::Tile tile;                           ///< of the contact sheet
 };
@@ -87,7 +87,7 @@ petzval::DiffractionPsf waves_of(const Picture& picture, double half_width_mm) {
   });
 }
 
-petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& options) {
+petzval::Psf image_of(const Picture& picture, const petzval::PsfOptions& options) {
   if (picture.camera) return petzval::point_image(*picture.camera, picture.scene.light, options);
   return petzval::point_image(picture.scene.lens, picture.scene.light, options);
 }
@@ -202,7 +202,7 @@ Json to_json(std::span<const Picture> pictures, const Subject& subject, const Op
   const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {
     const auto pair = [](const petzval::Vec2<double>& v) { return std::array{v.x, v.y}; };
-    const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
+    const auto if_any = [&](const auto& size) { return p.image.mean_throughput > 0 ? Json(size) : Json(); };
     const double airy_radius = petzval::airy_radius(p.scene.lens);
     const petzval::Iris& iris = p.scene.lens.iris();
     const bool image = !options.setup.iris_map.empty() && !controls.weight_map.keep_mean;
@@ -212,10 +212,10 @@ Json to_json(std::span<const Picture> pictures, const Subject& subject, const Op
          {"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
          {"criterion", petzval::name(options.setup.focus.criterion)},
-         {"throughput", p.image.throughput},
+         {"throughput", p.image.mean_throughput},
          {"throughput_of_round_iris", options.setup.iris_area == "equal"
-                                          ? p.image.throughput * std::numbers::pi / petzval::iris_area(iris)
-                                          : p.image.throughput},
+                                          ? p.image.mean_throughput * std::numbers::pi / petzval::iris_area(iris)
+                                          : p.image.mean_throughput},
          {"centroid_mm", if_any(pair(p.image.size.centroid))},
          {"rms_radius_mm", if_any(p.image.size.rms_radius)},
          {"second_moments_mm2", if_any(std::array{p.image.size.xx, p.image.size.yy, p.image.size.xy})},
@@ -223,14 +223,14 @@ Json to_json(std::span<const Picture> pictures, const Subject& subject, const Op
          {"iris_area_share", iris_area / std::numbers::pi},
          {"airy_radius_mm", finite_or_null(airy_radius)},
          {"diffraction", if_any(petzval::name(petzval::diffraction(airy_radius, p.image.size)))},
-         {"rays", sum(p.image.psf.sent)},
-         {"rays_sent", sum(p.image.psf.sent)},
-         {"rays_transmitted", sum(p.image.psf.transmitted) / p.image.psf.units_per_ray},
+         {"rays", sum(p.image.sent)},
+         {"rays_sent", sum(p.image.sent)},
+         {"rays_transmitted", sum(p.image.transmitted) / p.image.units_per_ray},
          {"radial_profile", p.image.radial_profile},
          {"error", p.image.error},
          {"strehl", p.waves ? Json(p.waves->strehl) : Json()},
-         {"picture_centre_mm", pair(p.waves ? p.waves->centre : p.image.psf.centre)},
-         {"picture_pixel_mm", p.waves ? p.waves->pixel_mm : p.image.psf.pixel_mm}});
+         {"picture_centre_mm", pair(p.waves ? p.waves->centre : p.image.centre)},
+         {"picture_pixel_mm", p.waves ? p.waves->pixel_mm : p.image.pixel_mm}});
   }
   return json;
 }
@@ -280,13 +280,13 @@ void render(std::vector<Subject> subjects, const Options& options, const petzval
                           stem = loaded.id + field + "_focus_" + examples::number(p.focus_mm) + "mm";
         const examples::Together uninterrupted;
         const petzval::RgbImage image =
-            p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image.psf, options.light);
+            p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image, options.light);
         p.tile = examples::bokeh_tile(p.focus_mm, p.image, examples::expose(image, options.exposure));
         for (const auto& file : examples::write_picture(image, p.tile.picture, options.formats, folder / stem)) {
           options.output.file(file);
         }
         if (p.waves) p.tile.width_mm = picture_pixels * p.waves->pixel_mm;
-        p.image.psf.counts = {};  // many lenses and fields must fit into memory
+        p.image.counts = {};  // many lenses and fields must fit into memory
         lenses.back() = to_json(std::span(subject.pictures).first(i + 1), subject, options, controls);
         examples::write_text(numbers, report().dump(1) + '\n');
       }

@@ -82,9 +82,9 @@ class Scenes {
                                scene.lens.wavelength_index(petzval::Wavelength::nm(point.wavelength_nm)),
                                {.samples = options_.samples,
                                 .pixels = static_cast<int>(options_.pixels),
+                                .half_width_mm = half_width_mm,
                                 .seed = seed,
-                                .threads = examples::threads(),
-                                .half_width_mm = half_width_mm});
+                                .threads = examples::threads()});
   }
 
  private:
@@ -146,7 +146,7 @@ std::vector<std::size_t> left_to_do(const examples::PsfJob& job, const Options& 
 /// interpolation.
 Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examples::PsfJob& job, Scenes& scenes) {
   std::vector<petzval::PsfKernel> kernels;
-  for (const petzval::ExrPart& part : parts) kernels.push_back(petzval::from_exr_part(part).kernel);
+  for (const petzval::ExrPart& part : parts) kernels.push_back(petzval::from_exr_part(part).second);
   const petzval::PsfSet set(job.axes(), std::move(kernels));
   const auto middles = [](const std::vector<double>& axis, bool inverse) {
     std::vector<double> result;

@@ -254,9 +254,9 @@ class Job {
                                  [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); });
   }
   void say_where_focus_is_steep(const petzval::Camera& camera) const {
-    const petzval::FocalSteepness found = camera.focal_steepness();
-    if (found.steepness < 1 || integrator_ == renderer::Integrator::path) return;
-    const petzval::Vec2<double> pixel = setup_.film.raster(found.film_point);
+    petzval::FilmPoint steepest;
+    if (camera.focal_steepness(&steepest) < 1 || integrator_ == renderer::Integrator::path) return;
+    const petzval::Vec2<double> pixel = setup_.film.raster(steepest);
     std::cerr << "note: near pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
               << ") the focal surface is so steep that rays of several film points coincide; light paths count only "
                  "one of them: --integrator path includes all their light\n";

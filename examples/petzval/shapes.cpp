@@ -45,8 +45,8 @@ petzval::PsfOptions tile_options(double half_width_mm, std::size_t columns) {
           .threads = examples::threads()};
 }
 
-examples::Tile tile(const petzval::PointImage& image, const std::vector<std::string>& captions) {
-  return {examples::expose(examples::irradiance(image.psf)).picture, captions, image.psf.pixels * image.psf.pixel_mm};
+examples::Tile tile(const petzval::Psf& image, const std::vector<std::string>& captions) {
+  return {examples::expose(examples::irradiance(image)).picture, captions, image.pixels * image.pixel_mm};
 }
 
 /// The Tronnier double Gauss at f/4, with a light on the axis.
@@ -58,8 +58,7 @@ struct AxialScene {
                      " at f/4, focused at 2 m. A point light at 10 m on the axis, as in a photograph. Each tile has "
                      "its own exposure.";
 
-  petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls,
-                            std::size_t columns) const {
+  petzval::Psf image(petzval::ModelKind model, const petzval::BokehControls& controls, std::size_t columns) const {
     return petzval::point_image(examples::camera_of({lens, light}, {.model = model, .bokeh = controls}), light,
                                 tile_options(half_width_mm, columns));
   }
@@ -129,9 +128,9 @@ examples::Sheet cats_eyes() {
       const examples::BokehScene scene{lens, light(field)};
       const auto image = petzval::point_image(examples::camera_of(scene, {.model = model, .bokeh = controls}),
                                               scene.light, tile_options(half_width_mm, fields_deg.size()));
-      if (on_axis == 0) on_axis = image.throughput;
+      if (on_axis == 0) on_axis = image.mean_throughput;
       tiles.push_back(
-          tile(image, {number(field) + "°", "light: " + number(100 * image.throughput / on_axis, 3) + " %"}));
+          tile(image, {number(field) + "°", "light: " + number(100 * image.mean_throughput / on_axis, 3) + " %"}));
     }
   }
   return sheet;
@@ -153,7 +152,7 @@ examples::Sheet lens_ratios() {
       return petzval::point_image(examples::camera_of(scene, {.model = petzval::ModelKind::thin, .bokeh = controls}),
                                   scene.light, options);
     };
-    const petzval::PointImage open = image({}, {.samples = samples});
+    const petzval::Psf open = image({}, {.samples = samples});
     const double half_width_mm = 1.08 * open.size.max_radius;
     auto& tiles = sheet.rows
                       .emplace_back(examples::SheetRow{
@@ -162,10 +161,10 @@ examples::Sheet lens_ratios() {
                               ": the second rim moves with the distance from the centre of the film"})
                       .tiles;
     for (const double ratio : ratios) {
-      const petzval::PointImage eye =
+      const petzval::Psf eye =
           image({.lens_ratio = ratio, .rate_of_change = rate_of_change}, tile_options(half_width_mm, ratios.size()));
-      tiles.push_back(
-          tile(eye, {"ratio " + number(ratio), "light: " + number(100 * eye.throughput / open.throughput, 3) + " %"}));
+      tiles.push_back(tile(eye, {"ratio " + number(ratio),
+                                 "light: " + number(100 * eye.mean_throughput / open.mean_throughput, 3) + " %"}));
     }
   }
   return sheet;

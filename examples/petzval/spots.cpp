@@ -83,7 +83,7 @@ Setting setting_of(const Options& options) {
           subject_mm,        focus.origin,    film_of_file};
 }
 
-std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std::uint32_t samples) {
+petzval::Grid<petzval::Spot> spots(const Setting& setting, bool fields_given, std::uint32_t samples) {
   const double subject_z = petzval::origin_z(setting.lens, setting.origin) - setting.subject_mm;
   std::vector<double> fields;
   for (const double degrees : setting.fields.degrees) {
@@ -98,29 +98,26 @@ std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std:
   return petzval::spot_diagram(setting.lens, subject_z, fields, samples);
 }
 
-/// The field of a spot as given, without the rounding of a conversion to radians and back. Spots are ordered by field.
-double field_deg(const Setting& setting, std::size_t spot) {
-  return setting.fields.degrees[spot / setting.light.wavelengths_nm.size()];
-}
-
-std::string hits_csv(const std::vector<petzval::Spot>& all, const Setting& setting) {
+std::string hits_csv(const petzval::Grid<petzval::Spot>& all, const Setting& setting) {
   std::string csv = "field_deg,wavelength_nm,x_mm,y_mm\n";
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string start = examples::number(field_deg(setting, i)) + ',' +
-                              examples::number(setting.light.wavelengths_nm[all[i].wavelength]) + ',';
-    for (std::size_t k = 0; k < all[i].x.size(); ++k) {
-      csv += start + examples::number(all[i].x[k]) + ',' + examples::number(all[i].y[k]) + '\n';
+  for (std::size_t field = 0; field < all.size(); ++field) {
+    for (const petzval::Spot& spot : all[field]) {
+      const std::string start = examples::number(setting.fields.degrees[field]) + ',' +
+                                examples::number(setting.light.wavelengths_nm[spot.wavelength]) + ',';
+      for (std::size_t k = 0; k < spot.x.size(); ++k) {
+        csv += start + examples::number(spot.x[k]) + ',' + examples::number(spot.y[k]) + '\n';
+      }
     }
   }
   return csv;
 }
 
-Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, const Options& options) {
+Json to_json(const petzval::Grid<petzval::Spot>& all, const Setting& setting, const Options& options) {
   Json rows = Json::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const petzval::Spot& spot = all[i];
+  for (std::size_t i = 0; i < all.values.size(); ++i) {
+    const petzval::Spot& spot = all.values[i];
     const bool empty = spot.x.empty();  // no ray passes
-    rows.push_back({{"field_deg", field_deg(setting, i)},
+    rows.push_back({{"field_deg", setting.fields.degrees[i / all.columns]},
                     {"wavelength_nm", setting.light.wavelengths_nm[spot.wavelength]},
                     {"wavelength_weight", setting.light.weights[spot.wavelength]},
                     {"chief_ray_height_mm", examples::or_null(spot.chief_ray_height)},

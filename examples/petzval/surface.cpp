@@ -192,10 +192,10 @@ void write(const Options& options) {
   const Surface surface(options);
   const std::string map = map_of(surface, options);
   const std::string side = petzval::focal_surface_figure(
-      {surface.lens().name(),
-       "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + number(surface.film().width_mm) + " x " +
-           number(surface.film().height_mm) + " mm.",
-       surface.ideal(), surface.film(), surface.surface(), surface.points()});
+      surface.lens().name(),
+      "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + number(surface.film().width_mm) + " x " +
+          number(surface.film().height_mm) + " mm.",
+      surface.ideal(), surface.film(), surface.surface(), surface.points());
   const std::vector<double> inverses = surface.frame(surface.film()).inverses;
   const std::string found = options.queries_file.empty() ? "" : answers(surface, options.queries_file);
 

@@ -34,9 +34,9 @@ namespace {
 using examples::finite_or_null;
 using examples::Json;
 using examples::number;
+using petzval::FocusStatus;
 using petzval::TargetStatus;
 using petzval::TiltFit;
-using petzval::TiltFitStatus;
 using Vector = petzval::Vec3<double>;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -118,7 +118,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
                                                                           petzval::FocusCriterion::min_rms, rays_to_fit)
                                                      : petzval::autofocus(result.lens.ideal, served, result.lens.film);
   keep(focus.blurs, result, &Point::before_mm);
-  if (focus.status == petzval::AutofocusStatus::no_targets) give_up(options, result.points);
+  if (focus.status == petzval::FocusStatus::no_targets) give_up(options, result.points);
   if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens can focus on these points");
   return focus;
 }
@@ -155,14 +155,14 @@ Result solve(const Options& options) {
   result.after.film.height_mm = result.before.film.height_mm;
   keep(result.after.blurs, result, &Point::predicted_mm);
   switch (result.after.status) {
-    case petzval::TiltFitStatus::no_targets:
+    case petzval::FocusStatus::no_targets:
       if (result.points.empty()) break;
       give_up(options, result.points);
-    case petzval::TiltFitStatus::unreachable:
+    case petzval::FocusStatus::unreachable:
       throw petzval::Error(options.points_file + ": the film, " + number(result.lens.film.width_mm) + " x " +
                            number(result.lens.film.height_mm) +
                            " mm, would touch the lens; points must be farther away or the film smaller");
-    case petzval::TiltFitStatus::not_converged:
+    case petzval::FocusStatus::not_converged:
       throw petzval::Error(options.points_file + ": the fit of the film to these points did not converge");
     default: break;
   }
@@ -179,12 +179,12 @@ Result solve(const Options& options) {
 
 std::string status_in_words(const Result& result, const Options& options) {
   const std::string limit = number(options.max_tilt_deg) + " degrees";
-  if (result.after.status == petzval::TiltFitStatus::limited) {
+  if (result.after.status == petzval::FocusStatus::limited) {
     return "limited: the tilt is limited to " + limit +
            ", or less across points that are nearly on a line; this is the best film within the limit";
   }
-  if (result.after.status == petzval::TiltFitStatus::solved) return "solved: the points determine the plane of focus";
-  if (result.after.status == petzval::TiltFitStatus::no_targets)
+  if (result.after.status == petzval::FocusStatus::solved) return "solved: the points determine the plane of focus";
+  if (result.after.status == petzval::FocusStatus::no_targets)
     return "no targets: without points the film stays upright";
   if (result.after.rank == petzval::PlaneRank::point) {
     return "least tilt: one point of the picture determines a distance but no slope, so the film stays upright";
@@ -285,8 +285,8 @@ std::string to_text(const Result& result, const Options& options) {
 double sharp_mm(const petzval::Film& film) { return std::hypot(film.width_mm, film.height_mm) / 1442.2; }
 
 std::string side_view(const Result& result) {
-  std::vector<petzval::TiltFigurePoint> points;
-  for (const Point& p : result.points) points.push_back({p.target.point, p.serves()});
+  std::vector<petzval::FocusTarget> points;
+  for (const Point& p : result.points) points.push_back({.point = p.target.point, .weight = p.serves() ? 1.0 : 0.0});
   const std::string remark = result.lens.conditions + ", " + std::to_string(points.size()) +
                              (points.size() == 1 ? " focus point" : " focus points");
   return petzval::tilt_figure({.title = result.lens.title,

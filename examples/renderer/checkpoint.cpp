@@ -40,12 +40,11 @@ void add_channels(petzval::ExrPart& part, const std::string& name, const At& at)
   for (std::size_t i = 0; i < size; ++i) rest.push_back(at(i));
   std::size_t term = 0;
   do {
-    petzval::ExrChannel channel{term_name(name, term++), std::vector<float>(size)};
-    for (std::size_t i = 0; i < size; ++i) {
-      channel.values[i] = static_cast<float>(rest[i].value());
-      rest[i] -= FixedSum(static_cast<double>(channel.values[i]));
+    std::vector<float>& values = part.channels[term_name(name, term++)];
+    for (FixedSum& sum : rest) {
+      values.push_back(static_cast<float>(sum.value()));
+      sum -= FixedSum(static_cast<double>(values.back()));
     }
-    part.channels.push_back(std::move(channel));
   } while (std::any_of(rest.begin(), rest.end(), [](const FixedSum& sum) { return sum != FixedSum(); }));
 }
 
@@ -54,13 +53,12 @@ template <class Set>
 void read_channels(const petzval::ExrPart& part, const std::string& name, const Set& set) {
   std::vector<FixedSum> sums(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height));
   for (std::size_t term = 0;; ++term) {
-    const auto channel = std::find_if(part.channels.begin(), part.channels.end(),
-                                      [&](const auto& own) { return own.name == term_name(name, term); });
+    const auto channel = part.channels.find(term_name(name, term));
     if (channel == part.channels.end()) {
       if (term == 0) throw petzval::Error("part \"" + part.name + "\" has no channel " + name);
       break;
     }
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += FixedSum(static_cast<double>(channel->values[i]));
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += FixedSum(static_cast<double>(channel->second[i]));
   }
   for (std::size_t i = 0; i < sums.size(); ++i) set(i, sums[i]);
 }
@@ -76,12 +74,9 @@ std::string checksum_of(const std::string& job, const std::vector<petzval::ExrPa
   for (const petzval::ExrPart& part : parts) {
     bytes += part.name;
     for (const auto& [name, value] : part.numbers) bytes += name, add(std::bit_cast<std::uint64_t>(value), 8);
-    std::vector<const petzval::ExrChannel*> sorted;  // order of channels in files
-    for (const petzval::ExrChannel& channel : part.channels) sorted.push_back(&channel);
-    std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
-    for (const petzval::ExrChannel* const channel : sorted) {
-      bytes += channel->name;
-      for (const float value : channel->values) add(std::bit_cast<std::uint32_t>(value), 4);
+    for (const auto& [name, values] : part.channels) {
+      bytes += name;
+      for (const float value : values) add(std::bit_cast<std::uint32_t>(value), 4);
     }
   }
   return petzval::checksum(bytes);
@@ -117,7 +112,7 @@ std::vector<petzval::ExrPart> Checkpoint::parts(const PictureSums& sums) {
   std::vector<petzval::ExrPart> all{std::move(pixels), std::move(tiles)};
   if (!sums.guides_.empty()) {
     all.push_back({.name = "guides", .width = sums.width_, .height = sums.height_});
-    for (const auto& [name, values] : sums.guides_) all.back().channels.push_back({name, values});
+    all.back().channels = sums.guides_;
   }
   return all;
 }
@@ -177,7 +172,7 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
     }
     if (all.size() > 2) {
       const auto width = static_cast<std::size_t>(sums.width_), height = static_cast<std::size_t>(sums.height_);
-      for (const auto& [name, values] : part(2, "guides", width, height).channels) sums.guides_[name] = values;
+      sums.guides_ = part(2, "guides", width, height).channels;
     }
     const auto rejected = all.front().numbers.find("rejected");
     if (rejected == all.front().numbers.end()) throw petzval::Error("has no number rejected");

@@ -170,16 +170,16 @@ std::string short_number(double value) { return value < 100 ? number(value, 3) :
 
 }  // namespace
 
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, Exposed exposed) {
+Tile bokeh_tile(double focus_mm, const petzval::Psf& image, Exposed exposed) {
   std::vector<std::string> captions{focus_caption(focus_mm)};
-  if (image.throughput > 0) {
+  if (image.mean_throughput > 0) {
     captions.push_back("radius " + short_number(image.size.max_radius) + " mm");
     captions.push_back("RMS " + short_number(image.size.rms_radius) + " mm");
   } else {
     captions.emplace_back("no light passes");
   }
   captions.push_back("white " + short_number(exposed.white_per_mm2) + " / mm²");
-  return {std::move(exposed.picture), std::move(captions), image.psf.pixels * image.psf.pixel_mm};
+  return {std::move(exposed.picture), std::move(captions), image.pixels * image.pixel_mm};
 }
 
 std::vector<std::string> bokeh_notes() {

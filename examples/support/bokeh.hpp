@@ -77,7 +77,7 @@ Exposed expose(const petzval::RgbImage& image, double exposure = 1);
 std::string focus_caption(double focus_mm);
 
 /// A tile of a contact sheet: picture, focus distance, size of the blur, exposure.
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, Exposed exposed);
+Tile bokeh_tile(double focus_mm, const petzval::Psf& image, Exposed exposed);
 
 /// Notes that explain the lines below a tile.
 std::vector<std::string> bokeh_notes();

@@ -179,7 +179,7 @@ std::optional<DeclaredPupil> declared_pupil(const petzval::DesignData& design, c
 
 bool reached_by_light(const petzval::Lens& lens, const petzval::FieldPoint& point) {
   const auto spots = petzval::spot_diagram(lens, point.z, {&point.field_rad, 1}, 64);
-  return std::ranges::any_of(spots, [](const petzval::Spot& spot) { return !spot.x.empty(); });
+  return std::ranges::any_of(spots.values, [](const petzval::Spot& spot) { return !spot.x.empty(); });
 }
 
 void want_light(const petzval::Lens& lens, const petzval::FieldPoint& point, const std::string& flag) {

@@ -117,7 +117,7 @@ petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camer
     Vec3<double> position = to_lens(world->position);
     if (world->at_infinity) position = far_mm * (position - to_lens({0, 0, 0}));
     const petzval::Projection seen = camera.project(position);
-    if (seen.status == petzval::ProjectionStatus::not_visible) {
+    if (seen.status == petzval::AimStatus::no_ray) {
       entry.refuse(entry.place_key(), "a point that the camera images on or outside its film");
     }
     point.film_point = seen.film;

@@ -94,7 +94,7 @@ std::vector<double> visible_wavelengths(const petzval::Lens& lens) {
 
 LightReport report_light(const Report& report, const std::string& coatings, const petzval::Lens& colours,
                          const std::optional<petzval::Lens>& visible) {
-  LightReport result{coatings, {}, colours, report.subject.fields.degrees, {}, visible, {}};
+  LightReport result{coatings, {}, colours, report.subject.fields.degrees, {{}, 1}, visible, {}};
   for (const std::size_t surface : petzval::uncoated_surfaces(colours)) {
     result.uncoated.push_back(report.surface_number(surface));
   }
@@ -132,11 +132,12 @@ Json to_json(const std::optional<LightReport>& light) {
   json["coatings"] = light->coatings.empty() ? "file" : light->coatings;
   json["uncoated_surfaces"] = light->uncoated;
   json["transmittance"] = Json::array();
-  const auto wavelengths = light->colours.wavelengths_nm();
-  for (std::size_t i = 0; i < light->values.size(); ++i) {
-    json["transmittance"].push_back({{"wavelength_nm", wavelengths[i % wavelengths.size()]},
-                                     {"field_deg", light->fields_deg[i / wavelengths.size()]},
-                                     {"value", or_null(light->values[i].value)}});
+  for (std::size_t field = 0; field < light->values.size(); ++field) {
+    for (std::size_t w = 0; w < light->values.columns; ++w) {
+      json["transmittance"].push_back({{"wavelength_nm", light->colours.wavelengths_nm()[w]},
+                                       {"field_deg", light->fields_deg[field]},
+                                       {"value", or_null(light->values[field][w])}});
+    }
   }
   if (light->t_stop) json["t_stop"] = finite_or_null(*light->t_stop);
   if (light->colour) json["colour"] = to_json(*light->colour);
@@ -193,10 +194,12 @@ std::vector<std::string> colour_in_words(const petzval::LensColour& colour) {
 std::string to_text(const LightReport& light) {
   std::ostringstream text;
   text << "\nlight that the lens passes, mean over the pupil:\n  " << coatings_in_words(light) << '\n';
-  for (const auto& [field, wavelength, value] : light.values) {
-    text << "  " << number(petzval::degrees(field), 4) << "\u00b0, "
-         << number(light.colours.wavelengths_nm()[wavelength], 6)
-         << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
+  for (std::size_t field = 0; field < light.values.size(); ++field) {
+    for (std::size_t w = 0; w < light.values.columns; ++w) {
+      const std::optional<double>& value = light.values[field][w];
+      text << "  " << number(light.fields_deg[field], 4) << "\u00b0, " << number(light.colours.wavelengths_nm()[w], 6)
+           << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
+    }
   }
   if (const std::string words = t_stop_in_words(light); !words.empty()) text << "  " << words << '\n';
   if (!light.visible) text << "  no colour: indices or reflectances from 400 to 700 nm are unknown\n";

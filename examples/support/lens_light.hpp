@@ -25,11 +25,11 @@ std::optional<petzval::Lens> coated(const petzval::Lens& lens, const std::string
 
 /// Light that passes a lens with coatings.
 struct LightReport {
-  std::string coatings;                             ///< as --coatings; empty: of the file
-  std::vector<int> uncoated;                        ///< surfaces to air for which the file states no coating
-  petzval::Lens colours;                            ///< the lens at the wavelengths of the report
-  std::vector<double> fields_deg;                   ///< fields of the report
-  std::vector<petzval::FieldTransmittance> values;  ///< of `colours` at these fields
+  std::string coatings;                         ///< as --coatings; empty: of the file
+  std::vector<int> uncoated;                    ///< surfaces to air for which the file states no coating
+  petzval::Lens colours;                        ///< the lens at the wavelengths of the report
+  std::vector<double> fields_deg;               ///< fields of the report
+  petzval::Grid<std::optional<double>> values;  ///< petzval::transmittance() of `colours` at these fields
   /// The lens at 400 to 700 nm, less if a table of reflectances covers less; nullopt if its indices are unknown.
   std::optional<petzval::Lens> visible;
   std::optional<petzval::LensColour> colour;  ///< in daylight (D65); nullopt: no ray passes or no `visible`

@@ -190,15 +190,13 @@ void light_table(std::ostream& html, const LightReport& light) {
   html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">field</th>";
   for (const double nm : wavelengths) html << "<th class=\"number\">" << number(nm, 6) << " nm</th>";
   html << "</tr>\n";
-  for (std::size_t k = 0; k < light.values.size(); ++k) {
-    if (k % wavelengths.size() == 0) {
-      html << (k == 0 ? "" : "</tr>\n") << "<tr><td class=\"number\">"
-           << number(light.fields_deg[k / wavelengths.size()], 4) << "\u00b0</td>";
+  for (std::size_t field = 0; field < light.values.size(); ++field) {
+    html << "<tr><td class=\"number\">" << number(light.fields_deg[field], 4) << "\u00b0</td>";
+    for (const std::optional<double>& value : light.values[field]) {
+      html << "<td class=\"number\">" << (value ? number(100 * *value, 4) + " %" : "no light") << "</td>";
     }
-    const std::optional<double>& value = light.values[k].value;
-    html << "<td class=\"number\">" << (value ? number(100 * *value, 4) + " %" : "no light") << "</td>";
+    html << "</tr>\n";
   }
-  html << "</tr>\n";
   html << "</table></div>\n";
 }
 
@@ -330,8 +328,8 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
     return result;
   }
 
-  const std::vector<petzval::Spot>& spots = aberrations.spots->values;
-  const std::vector<petzval::RayFan>& fans = aberrations.ray_fans->values;
+  const petzval::Grid<petzval::Spot>& spots = *aberrations.spots;
+  const petzval::Grid<petzval::RayFan>& fans = *aberrations.ray_fans;
   std::vector<double> shifts;
   if (aberrations.through_focus->size() > 0) {
     for (const auto& spot : (*aberrations.through_focus)[0]) shifts.push_back(spot.film_shift_mm);
@@ -353,7 +351,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
       [&] {
         std::vector<double> fractions;
         for (int k = 1; k <= 100; ++k) fractions.push_back(k / 100.0);
-        const auto points = petzval::encircled_energy(spots, weights.size(), fractions, weights);
+        const auto points = petzval::encircled_energy(spots, fractions, weights);
         return petzval::energy_figure(colours, subject_z, points);
       });
   add("fans", "Ray fans",
@@ -374,12 +372,12 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
       [&] { return petzval::focus_figure(colours, spots, weights); });
   add("mtf", "Contrast",
       "Contrast of fine lines, by rays. Where the curves of a field separate there is astigmatism or coma.",
-      [&] { return petzval::mtf_figure(colours, subject_z, aberrations.mtf->values); });
+      [&] { return petzval::mtf_figure(colours, subject_z, *aberrations.mtf); });
   if (aberrations.mtf_over_field->size() > 0) {
     add("mtf_field", "Contrast over the field",
         "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "
         "astigmatism or lateral colour.",
-        [&] { return petzval::mtf_field_figure(colours, subject_z, aberrations.mtf_over_field->values); });
+        [&] { return petzval::mtf_field_figure(colours, subject_z, *aberrations.mtf_over_field); });
   }
   add("colour", "Spherical aberration and colour",
       "Where rays of the axial point cross the axis, over their height on the stop. A bent curve is spherical "
@@ -402,23 +400,23 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
         "pupil grows with the field, as in fisheyes and retrofocus lenses.",
         [&] { return petzval::illumination_figure(lens, subject_z, farthest); });
   }
-  std::vector<petzval::FieldTransmittance> over_wavelength, over_field;
+  petzval::Grid<std::optional<double>> over_wavelength{{}, 1}, over_field{{}, 1};
+  std::vector<double> steps_rad;
   if (light && light->visible) {
     over_wavelength = petzval::transmittance(*light->visible, examples::subject_z(r.subject, *light->visible), fields,
                                              examples::threads());
     add("transmittance", "Transmittance",
         "The fraction of the light that the lens passes, mean over the pupil. A slope colours the picture: less blue "
         "is warm.",
-        [&] { return petzval::transmittance_figure(*light->visible, subject_z, over_wavelength); });
+        [&] { return petzval::transmittance_figure(*light->visible, subject_z, fields, over_wavelength); });
   }
   if (light && farthest != 0) {
     constexpr int steps = 20;
-    std::vector<double> grid;
-    for (int k = 0; k <= steps; ++k) grid.push_back(farthest * k / steps);
-    over_field = petzval::transmittance(light->colours, subject_z, grid, examples::threads());
+    for (int k = 0; k <= steps; ++k) steps_rad.push_back(farthest * k / steps);
+    over_field = petzval::transmittance(light->colours, subject_z, steps_rad, examples::threads());
     add("transmittance_field", "Transmittance over the field",
         "Steep rays at the edge lose more light. Vignetting is not included: the pupil counts as 1.",
-        [&] { return petzval::transmittance_field_figure(light->colours, subject_z, over_field); });
+        [&] { return petzval::transmittance_field_figure(light->colours, subject_z, steps_rad, over_field); });
   }
   draw_all();
   return result;

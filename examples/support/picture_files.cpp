@@ -12,8 +12,11 @@ namespace examples {
 namespace {
 
 petzval::ExrPart exr_part(const petzval::RgbImage& image) {
-  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"R", {}}, {"G", {}}, {"B", {}}}};
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) part.channels[i % 3].values.push_back(image.pixels[i]);
+  petzval::ExrPart part{.width = image.width, .height = image.height};
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<float>& values = part.channels[std::string(1, "RGB"[c])];
+    for (std::size_t i = c; i < image.pixels.size(); i += 3) values.push_back(image.pixels[i]);
+  }
   return part;
 }
 
@@ -49,7 +52,7 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
       petzval::ExrPart part = exr_part(image);
       part.texts = attributes;
       part.numbers = numbers;
-      for (const auto& [name, values] : channels) part.channels.push_back({name, values});
+      part.channels.insert(channels.begin(), channels.end());
       petzval::write_exr({&part, 1}, file);
     }
     if (format == "pfm") petzval::write_pfm(image, file);

@@ -96,7 +96,7 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
                 "Up is away from the centre of the photograph. Tiles of a row have the same film scale and their "
                 "own exposure."}};
   for (const double distance : axes.distances_mm) {
-    std::vector<petzval::PsfPart> row;
+    std::vector<std::pair<petzval::PsfSetPoint, petzval::PsfKernel>> row;
     for (std::size_t node = 0; node < parts.size(); ++node) {
       const petzval::PsfSetPoint point = axes.point(node);
       if (point.distance_mm == distance && point.wavelength_nm == nm && point.f_number == axes.f_numbers.front()) {

@@ -293,7 +293,7 @@ std::vector<std::optional<petzval::Vec2<double>>> Session::handles() const {
       continue;
     }
     const petzval::Projection seen = camera.project(editor_->to_lens(*mark.place_mm));
-    if (seen.status != petzval::ProjectionStatus::not_visible) result.back() = state.setup.film.raster(seen.film);
+    if (seen.status != petzval::AimStatus::no_ray) result.back() = state.setup.film.raster(seen.film);
   }
   return result;
 }

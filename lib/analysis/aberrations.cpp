@@ -109,15 +109,14 @@ std::vector<Harmonics> harmonics(std::span<const double> frequencies) {
 
 }  // namespace
 
-std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                             std::size_t count) {
+Grid<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::size_t count) {
   if (count < 2) throw Error("ray_fans: count = " + std::to_string(count) + "; must be at least 2");
-  std::vector<RayFan> fans;
+  Grid<RayFan> fans{{}, lens.wavelengths_nm().size()};
   for (const double field : fields_rad) {
     const FieldPoint point{.field_rad = field, .z = subject_z};
     const auto chief = analysis_detail::chief_point(lens, point, lens.primary_wavelength());
-    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-      RayFan& fan = fans.emplace_back(RayFan{field, w, {}});
+    for (std::size_t w = 0; w < fans.columns; ++w) {
+      RayFan& fan = fans.values.emplace_back(RayFan{field, w, {}});
       const auto errors = analysis_detail::SphereErrors::of(lens, point, w);
       const auto ray = [&](const Vec2<double>& target) {
         AimedRay aimed = aim(lens, point, target, w);
@@ -199,18 +198,17 @@ std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject
   return result;
 }
 
-std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wavelengths,
-                                    std::span<const double> frequencies_per_mm,
-                                    std::span<const double> wavelength_weights, int threads) {
+Grid<MtfPoint> geometric_mtf(const Grid<Spot>& spots, std::span<const double> frequencies_per_mm,
+                             std::span<const double> wavelength_weights, int threads) {
   constexpr std::size_t parts = analysis_detail::error_parts;
-  const auto weights = analysis_detail::ray_weights("geometric_mtf", spots, wavelengths, wavelength_weights);
+  const auto weights = analysis_detail::ray_weights("geometric_mtf", spots, wavelength_weights);
   const std::vector<Harmonics> groups = harmonics(frequencies_per_mm);
-  const std::size_t count = frequencies_per_mm.size(), tasks = 2 * spots.size();
+  const std::size_t count = frequencies_per_mm.size(), tasks = 2 * spots.values.size();
   // Sums over the rays of a spot: [2 spot + direction][frequency][part of the rays].
   std::vector<std::vector<std::array<std::complex<double>, parts>>> sums(tasks);
   parallel_for(tasks, 1, threads, [&](std::size_t task, std::size_t) {
-    const Spot& spot = spots[task / 2];
-    const Vec2<double> origin = spots[task / 2 / wavelengths * wavelengths].size.centroid;
+    const Spot& spot = spots.values[task / 2];
+    const Vec2<double> origin = spots[task / 2 / spots.columns].front().size.centroid;
     const bool along_y = task % 2 == 0;
     sums[task].resize(count);
     for (const Harmonics& group : groups) {
@@ -221,17 +219,20 @@ std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wav
       }
     }
   });
-  std::vector<MtfPoint> result;
-  for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
+  Grid<MtfPoint> result{{}, count};
+  for (std::size_t field = 0; field < spots.size(); ++field) {
+    const std::size_t first = field * spots.columns;
     for (std::size_t at = 0; at < count; ++at) {
-      MtfPoint& point = result.emplace_back(MtfPoint{spots[first].point.field_rad, frequencies_per_mm[at]});
+      MtfPoint& point =
+          result.values.emplace_back(MtfPoint{spots.values[first].point.field_rad, frequencies_per_mm[at]});
       for (std::size_t direction = 0; direction < 2; ++direction) {
         std::array<std::complex<double>, parts + 1> sum{};  // the last one: all rays
         std::array<double, parts + 1> total{};
         for (std::size_t part = 0; part < parts; ++part) {
-          for (std::size_t i = first; i < first + wavelengths; ++i) {
-            sum[part] += weights[i] * sums[2 * i + direction][at][part];
-            total[part] += weights[i] * static_cast<double>(analysis_detail::part_of(spots[i].x, part).size());
+          for (std::size_t i = first; i < first + spots.columns; ++i) {
+            sum[part] += weights.values[i] * sums[2 * i + direction][at][part];
+            total[part] +=
+                weights.values[i] * static_cast<double>(analysis_detail::part_of(spots.values[i].x, part).size());
           }
           sum[parts] += sum[part];
           total[parts] += total[part];
@@ -247,10 +248,9 @@ std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wav
   return result;
 }
 
-std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::size_t wavelengths,
-                                              std::span<const double> fractions,
-                                              std::span<const double> wavelength_weights, int threads) {
-  const auto weights = analysis_detail::ray_weights("encircled_energy", spots, wavelengths, wavelength_weights);
+Grid<EncircledEnergy> encircled_energy(const Grid<Spot>& spots, std::span<const double> fractions,
+                                       std::span<const double> wavelength_weights, int threads) {
+  const auto weights = analysis_detail::ray_weights("encircled_energy", spots, wavelength_weights);
   for (const double fraction : fractions) {
     if (!(fraction >= 0 && fraction <= 1)) {
       throw Error("encircled_energy: fraction = " + to_text(fraction) + "; must be 0 to 1");
@@ -259,11 +259,10 @@ std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::
   std::vector<std::size_t> order(fractions.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::ranges::sort(order, {}, [&](std::size_t k) { return fractions[k]; });
-  const std::size_t fields = spots.size() / wavelengths;
-  std::vector<EncircledEnergy> result(fields * fractions.size());
-  parallel_for(fields, 1, threads, [&](std::size_t field, std::size_t) {
-    const auto own = spots.subspan(field * wavelengths, wavelengths);
-    const auto own_weights = std::span(weights).subspan(field * wavelengths, wavelengths);
+  Grid<EncircledEnergy> result{std::vector<EncircledEnergy>(spots.size() * fractions.size()), fractions.size()};
+  parallel_for(spots.size(), 1, threads, [&](std::size_t field, std::size_t) {
+    const auto own = spots[field];
+    const auto own_weights = weights[field];
     const Vec2<double> centre = analysis_detail::SpotMoments(own, own_weights).centroid(0);
     struct Ray {
       double squared_radius;
@@ -272,7 +271,7 @@ std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::
     constexpr std::uint32_t parts = analysis_detail::error_parts;
     std::vector<Ray> rays;
     std::array<double, parts> total{};
-    for (std::size_t w = 0; w < wavelengths; ++w) {
+    for (std::size_t w = 0; w < own.size(); ++w) {
       const Spot& spot = own[w];
       if (own_weights[w] == 0) continue;
       for (std::size_t i = 0; i < spot.x.size(); ++i) {
@@ -302,7 +301,7 @@ std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::
       for (; next != order.end() && all > 0; ++next) found[*next] = largest;
       return found;
     };
-    EncircledEnergy* const own_result = result.data() + field * fractions.size();
+    EncircledEnergy* const own_result = result.values.data() + field * fractions.size();
     const auto of_all = radii(0, parts);
     for (std::size_t k = 0; k < fractions.size(); ++k) {
       own_result[k] = {own.front().point.field_rad, fractions[k], of_all[k], 0};
@@ -319,10 +318,10 @@ std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::
   return result;
 }
 
-std::vector<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subject_z, std::size_t count) {
+Grid<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subject_z, std::size_t count) {
   if (count < 2) throw Error("longitudinal_aberration: count = " + std::to_string(count) + "; must be at least 2");
   constexpr double near_axis = 1e-3, inside = 1 - 1e-9;  // as in field_curvature() and ray_fans()
-  std::vector<AxialRayFocus> foci;
+  Grid<AxialRayFocus> foci{{}, count};
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     const auto ray = [&](const Vec2<double>& target) -> std::optional<FilmRay> {
       const AimedRay aimed = aim(lens, {0, subject_z}, target, w);
@@ -331,7 +330,7 @@ std::vector<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subj
     };
     for (std::size_t i = 0; i < count; ++i) {
       const double pupil = static_cast<double>(i) / static_cast<double>(count - 1);
-      AxialRayFocus& focus = foci.emplace_back(AxialRayFocus{w, pupil, {}, {}});
+      AxialRayFocus& focus = foci.values.emplace_back(AxialRayFocus{w, pupil, {}, {}});
       const double height = inside * std::max(pupil, near_axis);
       if (const auto up = ray({0, height})) focus.tangential_mm = crossing(up->y, up->slope_y);
       if (const auto right = ray({height, 0})) focus.sagittal_mm = crossing(right->x, right->slope_x);

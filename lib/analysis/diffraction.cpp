@@ -130,7 +130,7 @@ class DirectionMap {
 };
 
 /// The film positions of an image: `pixels` columns and rows of `finer` samples each.
-struct Grid {
+struct SampleGrid {
   int pixels, finer;
   double pixel_mm;
 
@@ -179,7 +179,7 @@ double peak_near(std::span<const PlaneWave> waves, Vec2<double> position, double
 }
 
 /// Position of the largest sample, mm from the centre of the image.
-Vec2<double> brightest(const std::vector<double>& values, const Grid& grid) {
+Vec2<double> brightest(const std::vector<double>& values, const SampleGrid& grid) {
   const auto at = static_cast<int>(std::ranges::max_element(values) - values.begin());
   return {grid.position(at % grid.samples()), -grid.position(at / grid.samples())};
 }
@@ -192,7 +192,7 @@ Complex wave(double length, double wavelength) noexcept {
 
 /// Huygens' sum: the plane wave of each ray at each sample. It is a product of two matrices, because the phase of a
 /// plane wave on the film is the sum of a term in x and a term in y.
-Irradiance huygens(const DirectionMap& map, const Grid& grid, double wavelength_mm) {
+Irradiance huygens(const DirectionMap& map, const SampleGrid& grid, double wavelength_mm) {
   constexpr std::size_t radii = 64;
   const std::vector<PupilNode> nodes = analysis_detail::pupil_nodes<radii>(map.boundary());
   const double n = map.paths().film_index(), scale = n * n / (wavelength_mm * wavelength_mm);
@@ -338,8 +338,8 @@ class DirectionGrid {
 };
 
 /// The sum over a grid of directions by fast Fourier transforms of `size` samples.
-Irradiance transformed(const Lens& lens, const DirectionMap& map, const Grid& grid, std::size_t wavelength, int size,
-                       int threads) {
+Irradiance transformed(const Lens& lens, const DirectionMap& map, const SampleGrid& grid, std::size_t wavelength,
+                       int size, int threads) {
   const double wavelength_mm = lens.wavelengths_nm()[wavelength] * 1e-6, n = map.paths().film_index();
   const double scale = n * n / (wavelength_mm * wavelength_mm);
   const DirectionGrid directions(lens, map, wavelength, wavelength_mm / (n * size * grid.step()), threads);
@@ -400,7 +400,7 @@ Irradiance transformed(const Lens& lens, const DirectionMap& map, const Grid& gr
 }
 
 /// Means of finer x finer samples.
-std::vector<double> pixels_of(const std::vector<double>& samples, const Grid& grid) {
+std::vector<double> pixels_of(const std::vector<double>& samples, const SampleGrid& grid) {
   if (grid.finer == 1) return samples;
   const auto pixels = static_cast<std::size_t>(grid.pixels), finer = static_cast<std::size_t>(grid.finer);
   const std::size_t width = pixels * finer;
@@ -468,7 +468,7 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
   psf.pixel_mm = 2 * half_width / psf.pixels;
   // Irradiance has details down to half of the unit of the field, and needs two samples for each.
   psf.samples_per_pixel = std::max(1, static_cast<int>(std::ceil(std::min(psf.pixel_mm / (narrowest / 4), 1e6))));
-  const Grid grid{psf.pixels, psf.samples_per_pixel, psf.pixel_mm};
+  const SampleGrid grid{psf.pixels, psf.samples_per_pixel, psf.pixel_mm};
   // The transform needs the blur in its window, and 128 cells across the pupil; 32 if samples are that fine.
   const auto refuse = [&](const std::string& rule) {
     throw Error("diffraction_psf: width of the image = " + to_text(2 * half_width, 4) + " mm (blur of the rays " +
@@ -491,9 +491,8 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
   const double entrance = analysis_detail::entrance_pupil_area(lens);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (maps[i].empty()) continue;
-    const Irradiance image = options.sum == DiffractionSum::huygens
-                                 ? huygens(maps[i], grid, psf.wavelengths_nm[i] * 1e-6)
-                                 : transformed(lens, maps[i], grid, wavelengths[i], size, options.threads);
+    const Irradiance image = options.huygens ? huygens(maps[i], grid, psf.wavelengths_nm[i] * 1e-6)
+                                             : transformed(lens, maps[i], grid, wavelengths[i], size, options.threads);
     psf.strehl[i] = image.peak / image.in_phase;
     psf.throughput[i] = maps[i].boundary().area() / entrance;
     const double light = grid.step() * grid.step() / entrance;

@@ -117,7 +117,7 @@ void fill_counts(Psf& psf, const Rays& rays) {
   }
 }
 
-constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
+constexpr std::size_t rings = std::tuple_size_v<decltype(Psf::radial_profile)>;
 
 /// Counts of hits in rings of equal width around a centre. Hits outside the last ring, due to rounding, are counted in
 /// it.
@@ -166,11 +166,11 @@ constexpr double confidence = 1.6;
 constexpr double uneven_confidence = 3.6;
 
 /// Sets profile and error. Each part has rings of its own width, because the width contributes to the error.
-void fill_profile(PointImage& image, const Rays& rays) {
+void fill_profile(Psf& image, const Rays& rays) {
   const double width = image.size.max_radius / rings;
   image.radial_profile = {};
   if (width == 0) return;
-  const auto light = light_by_ring(image.psf, rays, {image.size.centroid, width}, subsets);
+  const auto light = light_by_ring(image, rays, {image.size.centroid, width}, subsets);
   double errors = 0, squares = 0;
   for (std::size_t k = 0; k < rings; ++k) {
     squares += light[k] * light[k];
@@ -185,7 +185,7 @@ void fill_profile(PointImage& image, const Rays& rays) {
     std::array<double, rings> its{};
     if (std::ranges::any_of(own, [](const analysis_detail::Points& points) { return !points.x.empty(); })) {
       if (size.max_radius == 0) continue;  // all hits coincide
-      its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, subset);
+      its = light_by_ring(image, rays, {size.centroid, size.max_radius / rings}, subset);
     }
     for (std::size_t k = 0; k < rings; ++k) errors += (subsets * its[k] - light[k]) * (subsets * its[k] - light[k]);
   }
@@ -248,10 +248,9 @@ std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& opti
 
 /// @param sampled_area one value for each wavelength of the image
 /// @param send_rays takes an index among these wavelengths
-PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
-                    const PsfOptions& options) {
-  PointImage image;
-  Psf& psf = image.psf;
+Psf image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
+             const PsfOptions& options) {
+  Psf psf;
   for (const std::size_t w : wavelengths_of(lens, options)) psf.wavelengths_nm.push_back(lens.wavelengths_nm()[w]);
   psf.entrance_pupil_area = analysis_detail::entrance_pupil_area(lens);
   psf.sampled_area = sampled_area;
@@ -261,9 +260,9 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
     rays.send(psf.wavelengths_nm.size(), samples, send_rays);
     psf.sent.assign(psf.wavelengths_nm.size(), samples);
     psf.units_per_ray = rays.weighted() ? Rays::units_per_ray : 1;
-    image.size = spot_size(rays.sets);
-    fill_profile(image, rays);
-    if (options.tolerance == 0 || image.error <= options.tolerance || samples > options.samples / 2) break;
+    psf.size = spot_size(rays.sets);
+    fill_profile(psf, rays);
+    if (options.tolerance == 0 || psf.error <= options.tolerance || samples > options.samples / 2) break;
     samples *= 2;
   }
   psf.transmitted.assign(psf.wavelengths_nm.size(), 0);
@@ -273,14 +272,14 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
         units.empty() ? rays.sets[i].size() : std::accumulate(units.begin(), units.end(), std::uint64_t{0});
   }
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
-    image.throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
+    psf.mean_throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
   }
-  psf.centre = options.centre.value_or(image.size.centroid);
+  psf.centre = options.centre.value_or(psf.size.centroid);
   psf.pixels = options.pixels;
   const double half = options.half_width_mm > 0 ? options.half_width_mm : fitting_half_width(rays.sets, psf.centre);
   psf.pixel_mm = 2 * half / options.pixels;
   fill_counts(psf, rays);
-  return image;
+  return psf;
 }
 
 }  // namespace
@@ -303,7 +302,7 @@ double Psf::throughput(std::size_t wavelength) const noexcept {
   return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
 }
 
-PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options) {
+Psf point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options) {
   validate(options);
   std::vector<PupilSampler> pupils_by_wavelength;
   std::vector<double> areas;
@@ -317,7 +316,7 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   return image_of(lens, areas, send, options);
 }
 
-PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options) {
+Psf point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options) {
   validate(options);
   const Lens& lens = camera.lens();
   const PupilPlane plane(lens, point);

@@ -103,33 +103,27 @@ std::vector<AxisNode> around(const std::vector<double>& axis, double at, const c
 }  // namespace
 
 PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& point, std::size_t wavelength,
-                     const PsfKernelOptions& options) {
+                     const PsfOptions& options) {
   if (options.pixels < 3 || options.pixels % 2 == 0) {
     throw Error("psf_kernel: pixels = " + std::to_string(options.pixels) +
                 "; must be odd and at least 3, because the anchor is the middle of a pixel");
   }
   const auto chief = analysis_detail::chief_point(lens, point, wavelength);
-  const PointImage image = point_image(lens, point,
-                                       {.samples = options.samples,
-                                        .pixels = options.pixels,
-                                        .half_width_mm = options.half_width_mm,
-                                        .centre = chief,
-                                        .wavelength = wavelength,
-                                        .seed = options.seed,
-                                        .threads = options.threads});
-  const Psf& psf = image.psf;
+  PsfOptions centred = options;
+  centred.centre = chief, centred.wavelength = wavelength;
+  const Psf psf = point_image(lens, point, centred);
   PsfKernel kernel;
   kernel.pixels = psf.pixels;
   kernel.pixel_mm = psf.pixel_mm;
   kernel.chief_ray = chief.has_value();
   kernel.anchor_mm = psf.centre;
-  kernel.throughput = image.throughput;
-  kernel.error = image.error;
+  kernel.throughput = psf.mean_throughput;
+  kernel.error = psf.error;
   kernel.rays = static_cast<double>(psf.sent[0]);
-  kernel.diffraction = diffraction(airy_radius(lens, wavelength), image.size);
+  kernel.diffraction = diffraction(airy_radius(lens, wavelength), psf.size);
 
   const double axis = film_irradiance(with_film(wide_open, lens.film_z()), {}, wide_open.primary_wavelength());
-  if (image.throughput > 0 && axis > 0) {
+  if (psf.mean_throughput > 0 && axis > 0) {
     kernel.total = film_irradiance(lens, {kernel.anchor_mm.x, kernel.anchor_mm.y}, wavelength) / axis;
   }
   // A photograph is rotated by 180 degrees.

@@ -26,11 +26,6 @@ auto quantity(const Compute& compute) -> LensReport::Quantity<decltype(compute()
   }
 }
 
-template <class T>
-LensReport::Grid<T> grid(std::vector<T> values, std::size_t columns) {
-  return {std::move(values), std::max<std::size_t>(columns, 1)};
-}
-
 /// Rays of a spot. The sampling errors grow with lenses of more than 512 surfaces.
 std::uint32_t rays_per_spot(const Lens& lens) {
   constexpr std::size_t most_hits = 1 << 24;  // rays times surfaces
@@ -39,30 +34,29 @@ std::uint32_t rays_per_spot(const Lens& lens) {
   return rays;
 }
 
-LensReport::Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t rays) {
+Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t rays) {
   constexpr std::size_t steps = 10;
   constexpr std::array frequencies{10.0, 20.0, 40.0};
   const std::size_t wavelengths = r.lens.wavelengths_nm().size();
-  if (r.largest_field.field_rad == 0) return grid<MtfPoint>({}, frequencies.size());
-  std::vector<Spot> spots((steps + 1) * wavelengths);
-  parallel_for(spots.size(), 1, r.conditions.threads, [&](std::size_t at, std::size_t) {
+  if (r.largest_field.field_rad == 0) return {{}, frequencies.size()};
+  Grid<Spot> spots{std::vector<Spot>((steps + 1) * wavelengths), wavelengths};
+  parallel_for(spots.values.size(), 1, r.conditions.threads, [&](std::size_t at, std::size_t) {
     const double field = r.largest_field.field_rad * static_cast<double>(at / wavelengths) / steps;
-    spots[at] = analysis_detail::trace_spot(r.lens, {field, r.conditions.subject_z}, at % wavelengths, rays);
+    spots.values[at] = analysis_detail::trace_spot(r.lens, {field, r.conditions.subject_z}, at % wavelengths, rays);
   });
-  return grid(geometric_mtf(spots, wavelengths, frequencies, r.conditions.wavelength_weights, r.conditions.threads),
-              frequencies.size());
+  return geometric_mtf(spots, frequencies, r.conditions.wavelength_weights, r.conditions.threads);
 }
 
-LensReport::Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
+Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
   const auto& weights = r.conditions.wavelength_weights;
-  const auto step = through_focus_step(r.lens, r.spots->values, weights);
-  if (!step) return grid<ThroughFocusSpot>({}, 1);
+  const auto step = through_focus_step(r.lens, *r.spots, weights);
+  if (!step) return {{}, 1};
   const std::array shifts{-2 * *step, -*step, 0.0, *step, 2 * *step};
-  return grid(through_focus(r.spots->values, r.spots->columns, shifts, weights), shifts.size());
+  return through_focus(*r.spots, shifts, weights);
 }
 
-LensReport::Grid<std::optional<double>> chief_ray_shifts(const LensReport& r) {
-  LensReport::Grid<std::optional<double>> shifts{{}, r.spots->columns};
+Grid<std::optional<double>> chief_ray_shifts(const LensReport& r) {
+  Grid<std::optional<double>> shifts{{}, r.spots->columns};
   for (std::size_t i = 0; i < r.spots->values.size(); ++i) {
     const auto& at_primary = (*r.spots)[i / shifts.columns][r.lens.primary_wavelength()].chief_ray_height;
     const auto& height = r.spots->values[i].chief_ray_height;
@@ -71,14 +65,14 @@ LensReport::Grid<std::optional<double>> chief_ray_shifts(const LensReport& r) {
   return shifts;
 }
 
-LensReport::Grid<std::optional<Wavefront>> wavefronts(const LensReport& r, std::span<const double> fields_rad,
-                                                      std::size_t directions) {
+Grid<std::optional<Wavefront>> wavefronts(const LensReport& r, std::span<const double> fields_rad,
+                                          std::size_t directions) {
   const std::size_t wavelengths = r.lens.wavelengths_nm().size();
-  LensReport::Grid<std::optional<Wavefront>> fronts{
-      std::vector<std::optional<Wavefront>>(fields_rad.size() * wavelengths), wavelengths};
+  Grid<std::optional<Wavefront>> fronts{std::vector<std::optional<Wavefront>>(fields_rad.size() * wavelengths),
+                                        wavelengths};
   parallel_for(fronts.values.size(), 1, r.conditions.threads, [&](std::size_t k, std::size_t) {
     const FieldPoint point{.field_rad = fields_rad[k / wavelengths], .z = r.conditions.subject_z};
-    fronts.values[k] = wavefront(r.lens, point, {.wavelength = k % wavelengths, .directions = directions});
+    fronts.values[k] = wavefront(r.lens, point, k % wavelengths, PupilCoordinates::stop, directions);
   });
   return fronts;
 }
@@ -123,15 +117,13 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   });
 
   const std::uint32_t rays = rays_per_spot(lens);
-  r.ray_fans = quantity([&] { return grid(ray_fans(lens, z, fields), wavelengths); });
+  r.ray_fans = quantity([&] { return ray_fans(lens, z, fields); });
   r.field_curvature = quantity([&] { return field_curvature(lens, z, fields); });
   r.distortion = quantity([&] { return distortion_percent(lens, z, fields); });
-  r.spots = quantity([&] { return grid(spot_diagram(lens, z, fields, rays, threads), wavelengths); });
+  r.spots = quantity([&] { return spot_diagram(lens, z, fields, rays, threads); });
   std::vector<double> frequencies;
   for (int k = 0; k <= 20; ++k) frequencies.push_back(5 * k);
-  r.mtf = quantity([&] {
-    return grid(geometric_mtf(r.spots->values, wavelengths, frequencies, weights, threads), frequencies.size());
-  });
+  r.mtf = quantity([&] { return geometric_mtf(*r.spots, frequencies, weights, threads); });
   r.diffraction_limit = quantity([&] {
     const double f_number = film_side_f_number(lens);
     const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
@@ -143,13 +135,9 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   r.through_focus = quantity([&] { return spots_through_focus(r); });
   r.encircled_energy = quantity([&] {
     constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};
-    return grid(encircled_energy(r.spots->values, wavelengths, fractions, weights, threads), fractions.size());
+    return encircled_energy(*r.spots, fractions, weights, threads);
   });
-  r.longitudinal_aberration = quantity([&] {
-    auto foci = longitudinal_aberration(lens, z);
-    const std::size_t positions = foci.size() / wavelengths;
-    return grid(std::move(foci), positions);
-  });
+  r.longitudinal_aberration = quantity([&] { return longitudinal_aberration(lens, z); });
   r.lateral_colour = quantity([&] { return chief_ray_shifts(r); });
   r.wavefront = quantity([&] { return wavefronts(r, fields, rays < 32768 ? 12 : 48); });
   return r;

@@ -93,7 +93,7 @@ struct Writer {
   OrderedJson failures = OrderedJson::object();
 
   template <class T, class Add>
-  void operator()(const char* key, const LensReport::Quantity<LensReport::Grid<T>>& grid, const Add& add_entry) {
+  void operator()(const char* key, const LensReport::Quantity<Grid<T>>& grid, const Add& add_entry) {
     OrderedJson& list = to.add(key, grid ? OrderedJson::list() : OrderedJson());
     if (!grid) return add(failures, key, grid.failure);
     for (std::size_t i = 0; i < grid->values.size(); ++i) {
@@ -102,7 +102,7 @@ struct Writer {
   }
   template <class T, class Add>
   void operator()(const char* key, const LensReport::Quantity<std::vector<T>>& values, const Add& add_entry) {
-    LensReport::Quantity<LensReport::Grid<T>> grid{{}, values.failure};
+    LensReport::Quantity<Grid<T>> grid{{}, values.failure};
     if (values) grid.value = {*values, 1};
     (*this)(key, grid, add_entry);
   }

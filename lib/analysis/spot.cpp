@@ -134,16 +134,17 @@ Spot analysis_detail::trace_spot(const Lens& lens, const FieldPoint& point, std:
   return spot;
 }
 
-std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                               std::uint32_t samples, int threads) {
+Grid<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::uint32_t samples,
+                        int threads) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  std::vector<Spot> spots(fields_rad.size() * wavelengths);
-  parallel_for(spots.size(), 1, threads, [&](std::size_t at, std::size_t) {
+  Grid<Spot> spots{std::vector<Spot>(fields_rad.size() * wavelengths), wavelengths};
+  parallel_for(spots.values.size(), 1, threads, [&](std::size_t at, std::size_t) {
     const std::size_t w = at % wavelengths;
     const FieldPoint point{fields_rad[at / wavelengths], subject_z};
-    spots[at] = analysis_detail::trace_spot(lens, point, w, samples);
-    spots[at].relative_illumination = relative_illumination(lens, point, w);
-    spots[at].chief_ray_height = chief_ray_height(lens, point, w);
+    Spot& spot = spots.values[at];
+    spot = analysis_detail::trace_spot(lens, point, w, samples);
+    spot.relative_illumination = relative_illumination(lens, point, w);
+    spot.chief_ray_height = chief_ray_height(lens, point, w);
   });
   return spots;
 }

@@ -21,9 +21,9 @@ PETZVAL_API Spot trace_spot(const Lens& lens, const FieldPoint& point, std::size
 /// Weight of a ray for each wavelength of spots: the weight of the wavelength divided by the rays that were sent.
 ///
 /// @param where   name of the function, for messages
-/// @throws Error  if the number of spots is not a multiple of `wavelengths`, or the number of weights differs
-PETZVAL_API std::vector<double> ray_weights(std::string_view where, std::span<const Spot> spots,
-                                            std::size_t wavelengths, std::span<const double> wavelength_weights);
+/// @throws Error  if the number of spots is not a multiple of their wavelengths, or the number of weights differs
+PETZVAL_API Grid<double> ray_weights(std::string_view where, const Grid<Spot>& spots,
+                                     std::span<const double> wavelength_weights);
 
 /// Sampling errors are stated as the largest deviation of a quarter of the rays from all rays. For 30 lenses of
 /// data/lenses the largest errors of a figure, against eight times as many rays, are at most 0.92 of it.

@@ -17,10 +17,10 @@ bool has_slopes(std::span<const Spot> spots) {
   });
 }
 
-std::vector<double> weights_of_rays_with_slopes(std::string_view where, std::span<const Spot> spots,
-                                                std::size_t wavelengths, std::span<const double> wavelength_weights) {
-  auto weights = analysis_detail::ray_weights(where, spots, wavelengths, wavelength_weights);
-  if (!has_slopes(spots)) {
+Grid<double> weights_of_rays_with_slopes(std::string_view where, const Grid<Spot>& spots,
+                                         std::span<const double> wavelength_weights) {
+  auto weights = analysis_detail::ray_weights(where, spots, wavelength_weights);
+  if (!has_slopes(spots.values)) {
     throw Error(std::string(where) + ": spots have fewer slopes than positions; must be spots of spot_diagram");
   }
   return weights;
@@ -30,19 +30,19 @@ std::vector<double> weights_of_rays_with_slopes(std::string_view where, std::spa
 
 namespace analysis_detail {
 
-std::vector<double> ray_weights(std::string_view where, std::span<const Spot> spots, std::size_t wavelengths,
-                                std::span<const double> wavelength_weights) {
+Grid<double> ray_weights(std::string_view where, const Grid<Spot>& spots, std::span<const double> wavelength_weights) {
   const bool weighted = !wavelength_weights.empty();
-  if (wavelengths == 0 || spots.size() % wavelengths != 0 || (weighted && wavelength_weights.size() != wavelengths)) {
-    throw Error(std::string(where) + ": " + std::to_string(spots.size()) + " spots, " + std::to_string(wavelengths) +
-                " wavelengths and " + std::to_string(wavelength_weights.size()) +
+  if (spots.columns == 0 || spots.values.size() % spots.columns != 0 ||
+      (weighted && wavelength_weights.size() != spots.columns)) {
+    throw Error(std::string(where) + ": " + std::to_string(spots.values.size()) + " spots, " +
+                std::to_string(spots.columns) + " wavelengths and " + std::to_string(wavelength_weights.size()) +
                 " weights; must be spots of all wavelengths of each field, and a weight for each wavelength or none");
   }
   // Rays sample the pupil evenly: a wavelength counts by its weight and by the rays that pass.
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < spots.size(); ++i) {
-    weights.push_back((weighted ? wavelength_weights[i % wavelengths] : 1) /
-                      static_cast<double>(std::max<std::size_t>(spots[i].sent, 1)));
+  Grid<double> weights{{}, spots.columns};
+  for (std::size_t i = 0; i < spots.values.size(); ++i) {
+    weights.values.push_back((weighted ? wavelength_weights[i % spots.columns] : 1) /
+                             static_cast<double>(std::max<std::size_t>(spots.values[i].sent, 1)));
   }
   return weights;
 }
@@ -114,19 +114,18 @@ double focus_range(const Lens& lens, const BlurParabola& blur) noexcept {
 
 }  // namespace analysis_detail
 
-std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> spots, std::size_t wavelengths,
-                                            std::span<const double> film_shifts_mm,
-                                            std::span<const double> wavelength_weights) {
-  const auto weights = weights_of_rays_with_slopes("through_focus", spots, wavelengths, wavelength_weights);
-  std::vector<ThroughFocusSpot> result;
-  for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
-    const auto own = spots.subspan(first, wavelengths);
-    const auto own_weights = std::span(weights).subspan(first, wavelengths);
+Grid<ThroughFocusSpot> through_focus(const Grid<Spot>& spots, std::span<const double> film_shifts_mm,
+                                     std::span<const double> wavelength_weights) {
+  const auto weights = weights_of_rays_with_slopes("through_focus", spots, wavelength_weights);
+  Grid<ThroughFocusSpot> result{{}, film_shifts_mm.size()};
+  for (std::size_t field = 0; field < spots.size(); ++field) {
+    const auto own = spots[field];
+    const auto own_weights = weights[field];
     const analysis_detail::SpotMoments all(own, own_weights);
     std::vector<analysis_detail::SpotMoments> parts;
     for (std::size_t k = 0; k < analysis_detail::error_parts; ++k) parts.emplace_back(own, own_weights, k);
     for (const double shift : film_shifts_mm) {
-      ThroughFocusSpot& spot = result.emplace_back(ThroughFocusSpot{own.front().point.field_rad, shift});
+      ThroughFocusSpot& spot = result.values.emplace_back(ThroughFocusSpot{own.front().point.field_rad, shift});
       if (all.empty()) continue;
       spot.centroid = all.centroid(shift);
       spot.rms_radius_mm = all.rms(shift);
@@ -138,14 +137,12 @@ std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> spots, std::si
   return result;
 }
 
-std::optional<double> through_focus_step(const Lens& lens, std::span<const Spot> spots,
+std::optional<double> through_focus_step(const Lens& lens, const Grid<Spot>& spots,
                                          std::span<const double> wavelength_weights) {
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
-  const auto weights = weights_of_rays_with_slopes("through_focus_step", spots, wavelengths, wavelength_weights);
+  const auto weights = weights_of_rays_with_slopes("through_focus_step", spots, wavelength_weights);
   std::vector<std::optional<analysis_detail::BlurParabola>> fields;
-  for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
-    const auto own_weights = std::span(weights).subspan(first, wavelengths);
-    fields.push_back(analysis_detail::SpotMoments(spots.subspan(first, wavelengths), own_weights).parabola());
+  for (std::size_t field = 0; field < spots.size(); ++field) {
+    fields.push_back(analysis_detail::SpotMoments(spots[field], weights[field]).parabola());
   }
   const auto blur = analysis_detail::mean(fields);
   if (!blur) return {};

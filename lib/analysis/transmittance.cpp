@@ -131,13 +131,13 @@ std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, W
   return area > 0 ? std::optional(light / area) : std::nullopt;
 }
 
-std::vector<FieldTransmittance> transmittance(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                              int threads) {
+Grid<std::optional<double>> transmittance(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                          int threads) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  std::vector<FieldTransmittance> result(fields_rad.size() * wavelengths);
-  parallel_for(result.size(), 1, threads, [&](std::size_t k, std::size_t) {
-    const double field = fields_rad[k / wavelengths];
-    result[k] = {field, k % wavelengths, transmittance(lens, {.field_rad = field, .z = subject_z}, k % wavelengths)};
+  Grid<std::optional<double>> result{std::vector<std::optional<double>>(fields_rad.size() * wavelengths), wavelengths};
+  parallel_for(result.values.size(), 1, threads, [&](std::size_t k, std::size_t) {
+    const FieldPoint point{.field_rad = fields_rad[k / wavelengths], .z = subject_z};
+    result.values[k] = transmittance(lens, point, k % wavelengths);
   });
   return result;
 }

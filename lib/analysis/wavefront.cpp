@@ -133,17 +133,18 @@ double zernike_fringe(std::size_t term, const Vec2<double>& pupil) {
   return radial(n, m, std::hypot(pupil.x, pupil.y)) * (sine ? std::sin(angle) : std::cos(angle));
 }
 
-std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, const WavefrontOptions& options) {
-  if (options.directions < 12 || options.directions % 3 != 0) {
-    throw Error("wavefront: directions = " + std::to_string(options.directions) +
+std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, Wavelength at,
+                                   PupilCoordinates coordinates, std::size_t least_directions) {
+  if (least_directions < 12 || least_directions % 3 != 0) {
+    throw Error("wavefront: directions = " + std::to_string(least_directions) +
                 "; must be a multiple of 3, at least 12");
   }
-  const std::size_t wavelength = lens.wavelength_index(options.wavelength);
+  const std::size_t wavelength = lens.wavelength_index(at);
   const auto errors = analysis_detail::SphereErrors::of(lens, point, wavelength);
   if (!errors) return {};
   std::optional<double> entrance_unit;
-  if (options.coordinates == PupilCoordinates::entrance) entrance_unit = pupils(lens).entrance.diameter / 2;
-  std::size_t directions = options.directions, radii = 16;
+  if (coordinates == PupilCoordinates::entrance) entrance_unit = pupils(lens).entrance.diameter / 2;
+  std::size_t directions = least_directions, radii = 16;
   std::optional<PupilBoundary> boundary;
   const auto trace = [&](std::size_t nodes) {
     return PupilRays(*errors,
@@ -173,7 +174,7 @@ std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, co
     }
     // Lenses of thousands of surfaces keep the first number of directions, so that reports take seconds.
     constexpr std::size_t most_hits = 1 << 20;
-    if (has_strehl && by_direction > strehl_goal && directions < 9 * options.directions &&
+    if (has_strehl && by_direction > strehl_goal && directions < 9 * least_directions &&
         3 * directions * radii * lens.surface_count() <= most_hits) {
       directions *= 3, rays.reset();
       continue;

@@ -66,8 +66,8 @@ class Gathering {
                             *loan);
                    }
                  });
-    picture_.statistics.steps = steps_;
-    picture_.statistics.missed = missed_;
+    picture_.step_count = steps_;
+    picture_.missed_count = missed_;
   }
 
  private:
@@ -302,7 +302,8 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);
     picture.columns = camera.columns, picture.rows = camera.rows;
     picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
-    picture.statistics = {.rays = pixels * rays.count() * static_cast<std::size_t>(rays.channels())};
+    picture.ray_count = pixels * rays.count() * static_cast<std::size_t>(rays.channels());
+    picture.missed_count = picture.step_count = picture.highlight_count = 0;
     if (!picture.memory) picture.memory = std::make_shared<BlurredImage::Memory>();
 
     auto start = std::chrono::steady_clock::now();
@@ -310,11 +311,11 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     const double finding = seconds_since(start);
     start = std::chrono::steady_clock::now();
     Gathering(layers, rays, options, method, beyond / 2, highlights, picture).run();
-    picture.statistics.gather_seconds = seconds_since(start);
+    picture.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
     highlights.spread(options, picture);
-    picture.statistics.highlights = highlights.count();
-    picture.statistics.highlight_seconds = finding + seconds_since(start);
+    picture.highlight_count = highlights.count();
+    picture.highlight_seconds = finding + seconds_since(start);
   } catch (...) {
     picture.columns = picture.rows = 0, picture.rgba.clear(), picture.missed.clear();
     throw;

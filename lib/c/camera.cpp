@@ -17,18 +17,12 @@ namespace {
 HostFrame frame_of(const HostOptions& host, const Lens& lens) {
   constexpr std::array hosts{Host::arnold, Host::pbrt, Host::mitsuba, Host::arnold};
   const bool of_lens = host.frame == PETZVAL_FRAME_LENS;
-  FrameOrigin origin = FrameOrigin::front_vertex;
-  switch (host.origin) {
-    case DistanceOrigin::film: origin = FrameOrigin::film; break;
-    case DistanceOrigin::entrance_pupil: origin = FrameOrigin::entrance_pupil; break;
-    default: break;
-  }
-  if (of_lens && origin != FrameOrigin::front_vertex) {
+  if (of_lens && host.origin != DistanceOrigin::front_vertex) {
     bad_argument("origin is not PETZVAL_FROM_FRONT_VERTEX; must be, in the frame of the lens");
   }
   const Host kind = hosts[static_cast<std::size_t>(host.frame)];
-  if (host.units_per_mm != 0) return {kind, lens, origin, host.units_per_mm};
-  return of_lens ? HostFrame(kind, lens, origin, 1) : HostFrame(kind, lens, origin);
+  if (host.units_per_mm != 0) return {kind, lens, host.origin, host.units_per_mm};
+  return of_lens ? HostFrame(kind, lens, host.origin, 1) : HostFrame(kind, lens, host.origin);
 }
 
 HostOptions host_options(const petzval_camera_options& options) {
@@ -315,12 +309,12 @@ petzval_status petzval_camera_sample_differential(const petzval_camera* camera, 
     const CameraContents& own = *live(camera, "camera").contents;
     const CameraRayDifferential found = own.camera.sample_differential(sample_of(own, given(sample, "sample")));
     put(own, found.sample, ray->ray);
-    const RasterDifferential by = by_raster(found, own.camera.film());
+    const auto [by_x, by_y] = by_raster(found, own.camera.film());
     const double units = own.frame.units_per_mm();
-    put(own.frame.direction_to_host(by.by_x.origin) * units, ray->origin_by_x);
-    put(own.frame.direction_to_host(by.by_x.direction), ray->direction_by_x);
-    put(own.frame.direction_to_host(by.by_y.origin) * units, ray->origin_by_y);
-    put(own.frame.direction_to_host(by.by_y.direction), ray->direction_by_y);
+    put(own.frame.direction_to_host(by_x.origin) * units, ray->origin_by_x);
+    put(own.frame.direction_to_host(by_x.direction), ray->direction_by_x);
+    put(own.frame.direction_to_host(by_y.origin) * units, ray->origin_by_y);
+    put(own.frame.direction_to_host(by_y.direction), ray->direction_by_y);
   });
 }
 
@@ -448,7 +442,7 @@ petzval_status petzval_camera_project(const petzval_camera* camera, std::size_t 
     for (std::size_t i = 0; i < count; ++i) {
       const Projection found = own.camera.project(own.frame.point_to_lens(vector_of(points + 3 * i)), wavelength_of(nm),
                                                   own.film_time(time));
-      const bool none = found.status == ProjectionStatus::not_visible;
+      const bool none = found.status == AimStatus::no_ray;
       raster[2 * i] = none ? std::numeric_limits<double>::quiet_NaN() : found.raster.x;
       raster[2 * i + 1] = none ? std::numeric_limits<double>::quiet_NaN() : found.raster.y;
       if (visible) visible[i] = found ? 1 : 0;
@@ -475,25 +469,25 @@ petzval_status petzval_camera_point_image(const petzval_camera* camera, const do
     const Vec3<double> at = vector_of(&given(point, "point"));
     const bool distant = flag(in.distant, "distant");
     if (distant && at == Vec3<double>{0, 0, 0}) bad_argument("point = (0, 0, 0); must be a direction if distant = 1");
-    const PointImage found = point_image(own.camera, field_of(own, at, distant), how);
+    const Psf found = point_image(own.camera, field_of(own, at, distant), how);
     petzval_psf out{};
     out.size = sizeof out;
-    out.pixel_mm = found.psf.pixel_mm;
-    out.centre_mm[0] = found.psf.centre.x, out.centre_mm[1] = found.psf.centre.y;
+    out.pixel_mm = found.pixel_mm;
+    out.centre_mm[0] = found.centre.x, out.centre_mm[1] = found.centre.y;
     out.centroid_mm[0] = found.size.centroid.x, out.centroid_mm[1] = found.size.centroid.y;
     out.rms_radius_mm = found.size.rms_radius, out.max_radius_mm = found.size.max_radius;
-    out.throughput = found.throughput, out.error = found.error;
-    out.pixels = found.psf.pixels, out.wavelengths = static_cast<std::int32_t>(found.psf.wavelengths_nm.size());
+    out.throughput = found.mean_throughput, out.error = found.error;
+    out.pixels = found.pixels, out.wavelengths = static_cast<std::int32_t>(found.wavelengths_nm.size());
     if (psf) send(out, psf, "petzval_psf");
     if (!image) return;
-    const auto& counts = found.psf.counts;
+    const auto& counts = found.counts;
     if (floats < counts.size()) {
       throw Failure{PETZVAL_TOO_SMALL,
                     "floats = " + std::to_string(floats) + "; must be at least " + std::to_string(counts.size())};
     }
-    const std::size_t plane = counts.size() / found.psf.wavelengths_nm.size();
+    const std::size_t plane = counts.size() / found.wavelengths_nm.size();
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      image[i] = static_cast<float>(static_cast<double>(counts[i]) * found.psf.ray_weight(i / plane));
+      image[i] = static_cast<float>(static_cast<double>(counts[i]) * found.ray_weight(i / plane));
     }
   });
 }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/camera_ray.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus.hpp"

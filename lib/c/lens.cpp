@@ -348,10 +348,10 @@ petzval_status petzval_lens_fit_film(const petzval_lens* handle, const petzval_f
       const TiltOptions options{.max_tilt_rad = max_tilt_rad, .film = start};
       const TiltFit solution =
           fit_detail::fit_film(image_rays(lens, start, targets, options.rays), targets, options, {});
-      if (!solution) status = fit_detail::status_name(solution.status);
+      if (!solution) status = name(solution.status);
       fitted = solution.film, found.rms_mm = solution.rms_mm;
-      found.limited = solution.status == TiltFitStatus::limited;
-      found.upright = solution.status == TiltFitStatus::least_tilt;
+      found.limited = solution.status == FocusStatus::limited;
+      found.upright = solution.status == FocusStatus::least_tilt;
     }
     if (!status.empty()) throw Error(lens.name() + ": film for focus points: " + std::string(status));
     petzval_film result = received(film, "petzval_film");

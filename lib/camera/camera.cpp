@@ -139,9 +139,9 @@ Normalisation Camera::normalisation() const noexcept { return data_->normalisati
 
 double Camera::transmission_error() const noexcept { return data_->transmission.error(); }
 
-FocalSteepness Camera::focal_steepness() const noexcept {
+double Camera::focal_steepness(FilmPoint* film_point) const noexcept {
   if (!data_->focus) return {};
-  return data_->focus.steepness(data_->tilted ? std::optional(data_->tilted->plane(0)) : std::nullopt);
+  return data_->focus.steepness(data_->tilted ? std::optional(data_->tilted->plane(0)) : std::nullopt, film_point);
 }
 
 CameraRay Camera::sample(const CameraSample& s) const noexcept {
@@ -188,13 +188,13 @@ void Camera::sample_differentials(std::size_t count, const CameraSamples<T>& sam
     if (rays.fates) rays.fates[i] = one.sample.fate;
     if (rays.pdf_pupil) rays.pdf_pupil[i] = static_cast<T>(one.sample.pdf_pupil);
     if (rays.pdf_direction) rays.pdf_direction[i] = static_cast<T>(one.sample.pdf_direction);
-    const RasterDifferential by = by_raster(one, film());
-    put(by.by_x, by_raster_x, i);
-    put(by.by_y, by_raster_y, i);
+    const auto [by_x, by_y] = by_raster(one, film());
+    put(by_x, by_raster_x, i);
+    put(by_y, by_raster_y, i);
   }
 }
 
-RasterDifferential by_raster(const CameraRayDifferential& ray, const Film& film) noexcept {
+std::array<Ray<double>, 2> by_raster(const CameraRayDifferential& ray, const Film& film) noexcept {
   const auto times = [](const Ray<double>& by, double mm) { return Ray<double>{by.origin * mm, by.direction * mm}; };
   return {times(ray.by_film_x, -film.width_mm / film.columns), times(ray.by_film_y, film.height_mm / film.rows)};
 }

@@ -250,33 +250,4 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
   return result;
 }
 
-std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
-                                 const FocusTime& moment) {
-  FocusTime when = moment;
-  when.film = film;
-  focus_detail::check_points(points, when);
-  std::vector<bool> result;
-  for (const FocusPoint& point : points) {
-    const bool valid = moment.time >= point.from && moment.time <= point.until;
-    result.push_back(valid && focus_detail::target_at(lens, point, when));
-  }
-  return result;
-}
-
-FadeFilter::FadeFilter(double time_constant_s) : time_constant_(time_constant_s) {
-  if (time_constant_s >= 0 && std::isfinite(time_constant_s)) return;
-  throw Error("FadeFilter: time constant = " + to_text(time_constant_s) + " s; must be finite and at least 0");
-}
-
-void FadeFilter::advance(double seconds, const std::vector<bool>& in_view) {
-  if (!(seconds >= 0)) throw Error("FadeFilter: step = " + to_text(seconds) + " s; must be at least 0");
-  const double left = time_constant_ > 0 ? std::exp(-seconds / time_constant_) : 0;
-  const std::size_t known = std::min(fades_.size(), in_view.size());
-  fades_.resize(in_view.size());
-  for (std::size_t i = 0; i < in_view.size(); ++i) {
-    const double end = in_view[i] ? 1 : 0;
-    fades_[i] = i < known ? end + (fades_[i] - end) * left : end;
-  }
-}
-
 }  // namespace petzval

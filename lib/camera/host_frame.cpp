@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/camera_ray.hpp"
+#include "petzval/camera/camera.hpp"
 
 #include <cmath>
 #include <string>
@@ -24,9 +24,8 @@ Vec3<double> signs_of(Host host) noexcept {
 
 double usual_unit(Host host) noexcept { return host == Host::arnold ? 0.1 : 0.001; }
 
-double z_of(const Lens& lens, FrameOrigin origin) {
-  if (origin == FrameOrigin::film) return lens.film_z();
-  if (origin == FrameOrigin::front_vertex) return 0;
+double z_of(const Lens& lens, DistanceOrigin origin) {
+  if (origin != DistanceOrigin::entrance_pupil) return origin_z(lens, origin);
   const double z = pupils(lens, lens.primary_wavelength()).entrance.z;
   if (std::isfinite(z)) return z;
   throw Error(
@@ -36,10 +35,10 @@ double z_of(const Lens& lens, FrameOrigin origin) {
 
 }  // namespace
 
-HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin)
+HostFrame::HostFrame(Host host, const Lens& lens, DistanceOrigin origin)
     : HostFrame(host, lens, origin, usual_unit(host)) {}
 
-HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm)
+HostFrame::HostFrame(Host host, const Lens& lens, DistanceOrigin origin, double units_per_mm)
     : signs_(signs_of(host)), origin_z_(z_of(lens, origin)), units_per_mm_(units_per_mm) {
   // Areas and their reciprocals stay finite, also as floats.
   if (!(units_per_mm >= 1e-15 && units_per_mm <= 1e15)) {

@@ -369,8 +369,8 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   return {{{straight.x, straight.y, at->maps.z}, direction}, wider};
 }
 
-FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) const noexcept {
-  FocalSteepness result;
+double LocalFocus::steepness(const std::optional<TiltedPlane>& plane, FilmPoint* steepest) const noexcept {
+  double result = 0;
   const Data& data = *data_;
   const Data::At& at = data.compiled[data.primary];
   constexpr int columns = 96, rows = 64;
@@ -388,7 +388,9 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
       const double rim = at.maps.radius * point.scale.a;
       const Vec2<double> x = data.moved(at, chief, {rim, 0}, plane), y = data.moved(at, chief, {0, rim}, plane);
       const Vec2<double> steep{asked.v[0] * x.x + asked.v[1] * x.y, asked.v[0] * y.x + asked.v[1] * y.y};
-      if (glm::length(steep) > result.steepness) result = {glm::length(steep), film_point};
+      if (!(glm::length(steep) > result)) continue;
+      result = glm::length(steep);
+      if (steepest) *steepest = film_point;
     }
   }
   return result;

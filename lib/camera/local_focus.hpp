@@ -61,7 +61,7 @@ class LocalFocus {
 
   /// See Camera::focal_steepness().
   /// @param plane plane of a film that is tilted or travels
-  FocalSteepness steepness(const std::optional<TiltedPlane>& plane) const noexcept;
+  double steepness(const std::optional<TiltedPlane>& plane, FilmPoint* steepest) const noexcept;
   /// The entrance pupils for points of the scene: discs that enclose the pupils of all film points.
   EntrancePupilTable entrances(const Lens& lens, const RayModel& model, int threads) const;
   /// Intersection of chief rays with the pupil plane, divided by the film point.

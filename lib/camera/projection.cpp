@@ -10,16 +10,6 @@
 
 namespace petzval {
 
-std::string_view name(ProjectionStatus status) noexcept {
-  switch (status) {
-    case ProjectionStatus::converged: return "converged";
-    case ProjectionStatus::outside_film: return "outside_film";
-    case ProjectionStatus::vignetted: return "vignetted";
-    case ProjectionStatus::not_visible: return "not_visible";
-  }
-  return "unknown";
-}
-
 namespace camera_detail {
 namespace {
 
@@ -84,12 +74,12 @@ Projection SceneSide::project(const RayModel& model, const Vec3<double>& point, 
   };
 
   FilmPoint film = *start;
-  const auto done = [&](ProjectionStatus status) {
+  const auto done = [&](AimStatus status) {
     const auto [x, y] = chiefs.pupil_point(film);
     const auto met = meet_film({film.x, film.y, x, y}, plane(time));
     if (!met) return result;
     const FilmPoint& at = met->point;
-    result = {film_.contains(at) ? status : ProjectionStatus::outside_film, at, film_.raster(at)};
+    result = {film_.contains(at) ? status : AimStatus::outside_film, at, film_.raster(at)};
     return result;
   };
   // Newton's iteration, until steps are as small as the precision of the model allows.
@@ -99,7 +89,7 @@ Projection SceneSide::project(const RayModel& model, const Vec3<double>& point, 
     // Neighbours towards the axis, where rays are less likely to be lost.
     const double hx = std::copysign(film_step, -film.x), hy = std::copysign(film_step, -film.y);
     const auto [by, lost] = misses(film, hx, hy);
-    if (lost) return done(ProjectionStatus::vignetted);
+    if (lost) return done(AimStatus::vignetted);
     const double xx = (by[1][0] - by[0][0]) / hx, xy = (by[2][0] - by[0][0]) / hy;
     const double yx = (by[1][1] - by[0][1]) / hx, yy = (by[2][1] - by[0][1]) / hy;
     const double determinant = xx * yy - xy * yx;
@@ -117,7 +107,7 @@ Projection SceneSide::project(const RayModel& model, const Vec3<double>& point, 
   Ray<double> ray;
   const bool within = model.to_scene(TwoPlaneRay{film.x, film.y, x, y}, wavelength, ray) == RayFate::transmitted &&
                       (model.clips_at_apertures() || model.pupils().contains(film, x, y, wavelength));
-  return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
+  return done(within ? AimStatus::converged : AimStatus::vignetted);
 }
 
 }  // namespace camera_detail

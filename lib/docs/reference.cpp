@@ -167,7 +167,7 @@ bool blurs_of_targets() {
   const std::vector<ScenePoint> points{targets[0].point, targets[1].point};
   const std::vector<std::optional<ExactBlur>> blurs = exact_blurs(lens, focus.film, points);
   std::cout << "autofocus: " << name(focus.status);
-  bool used = focus.status == AutofocusStatus::solved;
+  bool used = focus.status == FocusStatus::solved;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const TargetBlur& target = focus.blurs[i];
     const ExactBlur blur = blurs[i].value_or(ExactBlur{});
@@ -192,7 +192,7 @@ bool animated_point() {
   return near(position.x, 0, 1e-9) && near(position.z, -3000, 1e-9);
 }
 
-/// Interpolates the distance in focus between two points, and fades a point that leaves the picture.
+/// Interpolates the distance in focus between two points.
 bool focal_surface() {
   const Lens lens = double_gauss();
   const Film frame = film_in({.offset = lens.film_z()}, film);
@@ -202,23 +202,19 @@ bool focal_surface() {
   const FocalSurface surface(thick_lens(lens), frame, points, options);
   const FocalSurface::Values at_point = surface.at({-9, 0});
   const FocalSurface::Slopes between = surface.slopes({0, 0});
-  FadeFilter fades(0.2);
-  fades.advance(1 / 24.0, {true, true});
-  fades.advance(1 / 24.0, {true, false});
-  std::cout << "focal surface: slope " << between.inverse_distance.x << " /mm^2, fade " << fades.fades()[1] << '\n';
-  const FocalSurfaceView view{"double Gauss", "two points", thick_lens(lens), frame, surface, points};
-  return near(at_point.inverse_distance * 1500, 1, 1e-6) && between.inverse_distance.x < 0 && fades.fades()[1] < 1 &&
-         !focal_surface_figure(view).empty();
+  std::cout << "focal surface: slope " << between.inverse_distance.x << " /mm^2\n";
+  const std::string svg = focal_surface_figure("double Gauss", "two points", thick_lens(lens), frame, surface, points);
+  return near(at_point.inverse_distance * 1500, 1, 1e-6) && between.inverse_distance.x < 0 && !svg.empty();
 }
 
 /// Computes the derivatives of a ray by pixel, and the pixel of a scene point.
 bool pixel_derivatives() {
   const Camera camera(double_gauss(), film, {.model = ModelKind::exact_double});
   const CameraRayDifferential ray = camera.sample_differential({.film = {3, 2}, .pupil_u = 0.3, .pupil_v = 0.6});
-  const RasterDifferential pixel = by_raster(ray, film);
+  const auto [by_x, by_y] = by_raster(ray, film);
   const Projection image = camera.project({100, 50, -3000});
-  std::cout << "pixel: width " << pixel.by_x.direction.x << " rad, point at column " << image.raster.x << '\n';
-  return ray.sample && image && pixel.by_x.direction.x > 0;
+  std::cout << "pixel: width " << by_x.direction.x << " rad, point at column " << image.raster.x << '\n';
+  return ray.sample && image && by_x.direction.x > 0;
 }
 
 /// Measures the errors of a model of first order.
@@ -260,8 +256,8 @@ bool metadata() {
 bool diffraction_of_a_spot() {
   const Lens lens = with_focus(with_f_number(compile(table("double_gauss_100mm_f2.0")), 16), 3000);
   const std::vector<double> fields_rad{0};
-  const std::vector<Spot> spots = spot_diagram(lens, -3000, fields_rad, 256);
-  const SpotSize& size = spots[0].size;
+  const Grid<Spot> spots = spot_diagram(lens, -3000, fields_rad, 256);
+  const SpotSize& size = spots[0][0].size;
   const Diffraction influence = diffraction(airy_radius(lens), size);
   std::cout << "spot: RMS radius " << size.rms_radius << " mm, diffraction " << name(influence) << '\n';
   return influence == Diffraction::dominant;
@@ -270,13 +266,13 @@ bool diffraction_of_a_spot() {
 /// Computes a kernel, writes it as a part of an EXR file in memory, and builds a PSF set from the part.
 bool kernels() {
   const Lens lens = double_gauss();
-  const PsfKernelOptions options{.samples = 1u << 14, .pixels = 33};
+  const PsfOptions options{.samples = 1u << 14, .pixels = 33};
   const PsfKernel kernel = psf_kernel(lens, lens, {.z = -2000}, lens.primary_wavelength(), options);
   const PsfSetPoint point{.distance_mm = 2000, .wavelength_nm = d_line_nm, .f_number = 2};
-  const PsfPart part = from_exr_part(to_exr_part(kernel, point));
+  const auto [part_point, part] = from_exr_part(to_exr_part(kernel, point));
   const PsfSet::Axes axes{{0}, {2000}, {d_line_nm}, {2}};
-  const PsfSet set(axes, {part.kernel});
-  std::cout << "kernel: " << psf_part_name(part.point) << ", light " << part.kernel.total << '\n';
+  const PsfSet set(axes, {part});
+  std::cout << "kernel: " << psf_part_name(part_point) << ", light " << part.total << '\n';
   return set.at(point).total == kernel.total && total_variation(set.at(point), kernel) == 0;
 }
 
@@ -322,7 +318,7 @@ bool figures() {
   const Film upright = film_in({.offset = lens.film_z()}, film);
   Film tilted = upright;
   tilted.tilt_rad = radians(3);
-  const TiltFigurePoint point{.point = {{0, -500, -4000}}};
+  const FocusTarget point{.point = {{0, -500, -4000}}};
   const TiltView view{"double Gauss", "3 degrees", thick_lens(lens), &lens, upright, tilted, {}, 0.03, {&point, 1}};
   const FocusPullFrame frame{.time = 0, .film = upright, .subject_distance = 3000, .rms_mm = 0.01};
   const ParetoPoint fast{.name = "thin", .ns_per_ray = 5, .max_um = 90, .rms_um = 30, .on_front = true};

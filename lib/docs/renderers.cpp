@@ -107,7 +107,7 @@ void spectrum(const Prescription& prescription) {
 }
 
 void host(const Camera& camera) {
-  const HostFrame pbrt(Host::pbrt, camera.lens(), FrameOrigin::entrance_pupil);
+  const HostFrame pbrt(Host::pbrt, camera.lens(), DistanceOrigin::entrance_pupil);
   const CameraRay r = camera.sample({.film = {}, .pupil_u = 0.3, .pupil_v = 0.6});
   const Ray<double> camera_space = pbrt.to_host(r.ray);  // metres, +z ahead
   std::cout << "direction " << (camera_space.direction.z > 0 ? "+z" : "-z") << '\n';
@@ -140,7 +140,7 @@ void focal_surface(const Lens& lens) {
                                        {.film_point = {0, -8}, .inverse_distance = 1 / 3000.0, .extent_stops = 2}};
   const FocalSurface surface(thick_lens(lens), frame, points);
   const Camera camera(lens, frame, {.model = ModelKind::thin_two_disc, .focal_surface = surface});
-  std::cout << "steepness " << camera.focal_steepness().steepness << '\n';
+  std::cout << "steepness " << camera.focal_steepness() << '\n';
 }
 
 void errors(const Lens& lens) {

@@ -139,7 +139,6 @@ void add_point(Event& event) {
   event.read(fields);
   while (point.id.empty() || taken()) point.id = std::to_string(++settings.points_added);
   point.now.place = place_of(event, keys);
-  point.fade = FadeFilter(settings.fade_s);
   settings.active = point.id;
   settings.points.emplace_back(std::move(point));
 }
@@ -152,7 +151,7 @@ void move_point(Event& event) {
   event.read(fields);
   point->now.place = place_of(event, keys);
   point->by_hand = true;
-  point->fade = FadeFilter(event.settings.fade_s);
+  point->fade.reset();
   event.settings.active = point->id;
 }
 
@@ -235,7 +234,7 @@ void weighting(Event& event) {
               {"fade", settings.points_fade},
               number("fade_s", settings.fade_s, not_negative)});
   if (settings.fade_s == before) return;
-  for (auto& point : settings.points) point.edit().fade = FadeFilter(settings.fade_s);
+  for (auto& point : settings.points) point.edit().fade.reset();
 }
 
 template <class T>

@@ -51,8 +51,8 @@ struct EditorPoint {
   bool id_is_number = false;
   PointValues now;
   Keys<PointValues> keys;
-  bool by_hand = false;  ///< `now` replaces the keys until the time changes
-  FadeFilter fade{0.2};
+  bool by_hand = false;        ///< `now` replaces the keys until the time changes
+  std::optional<double> fade;  ///< weight of a point in the picture or out of it, 0 to 1; nullopt: a new position
 };
 
 /// All settings that events change. Undo restores earlier settings.

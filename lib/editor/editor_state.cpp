@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -159,7 +160,7 @@ Scenery scenery(const FocusScene& scene, const EditorSettings& settings, const F
     target.weight = 0;
     if (!result.tracks.back().keys.empty()) {
       const FocusKey& key = result.tracks.back().keys.front();
-      const double fade = point.fade.fades().empty() ? 1 : point.fade.fades().front();
+      const double fade = point.fade.value_or(1);
       target = {std::get<ScenePoint>(key.anchor), key.blur_mm, fade < least_fade ? 0 : key.weight * fade,
                 key.extent_stops};
     }
@@ -174,14 +175,16 @@ std::optional<FilmPoint> film_point(const Focused& base, const Film& film, const
   return image ? chief_point(*image, film) : std::nullopt;
 }
 
+/// Fades points that leave the picture, and back: exponential in time, so that every frame rate gives the same fades.
 void advance_fades(EditorSettings& settings, const Focused& base, const Scenery& points) {
+  const double left = settings.fade_s > 0 ? std::exp(-settings.seconds_to_fade / settings.fade_s) : 0;
   for (std::size_t i = 0; i < settings.points.size(); ++i) {
     const auto at = points.tracks[i].keys.empty() ? std::nullopt : film_point(base, base.film, points.targets[i]);
     const bool seen = at && base.film.contains(*at);
-    const bool stays = seen || !settings.points_fade;
-    const std::vector<double>& fades = settings.points[i]->fade.fades();
-    if (!fades.empty() && fades.front() == (stays ? 1 : 0)) continue;  // would not change
-    settings.points[i].edit().fade.advance(settings.seconds_to_fade, {stays});
+    const double end = seen || !settings.points_fade ? 1 : 0;
+    const std::optional<double> fade = settings.points[i]->fade;
+    if (fade == end) continue;
+    settings.points[i].edit().fade = fade ? end + (*fade - end) * left : end;
   }
   settings.seconds_to_fade = 0;
 }
@@ -214,7 +217,7 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
         const ScenePoint& at = points.targets[i].point;
         const bool ahead = !points.tracks[i].keys.empty() && at.position.z < 0;
         if (!ahead) {
-          result.status = name(AutofocusStatus::no_targets);
+          result.status = name(FocusStatus::no_targets);
           return result;
         }
         result.focus_mm = at.at_infinity ? infinity : -at.position.z;
@@ -370,7 +373,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
     for (std::size_t i = 0; i < points.tracks.size(); ++i) {
       if (points.tracks[i].keys.empty()) continue;
       tracks.push_back(points.tracks[i]);
-      fades.push_back(settings.points[i]->fade.fades().front());
+      fades.push_back(*settings.points[i]->fade);
     }
     std::vector<FocalPoint> seen =
         focal_points(base.ideal, base.film, tracks,
@@ -381,7 +384,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
       state.surface.emplace(base.ideal, base.film, seen, setup.focal_surface);
       setup.focal_points = std::move(seen);
     } else {
-      state.status = name(AutofocusStatus::no_targets);
+      state.status = name(FocusStatus::no_targets);
     }
   }
   for (const auto& shared : settings.points) {
@@ -392,7 +395,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
       mark.place_mm = at.position, mark.at_infinity = at.at_infinity;
     }
     mark.requested_px = point.now.blur_px, mark.weight = point.now.weight;
-    mark.fade = point.fade.fades().front();
+    mark.fade = *point.fade;
     mark.extent_stops = point.now.extent_stops;
     state.targets.push_back(std::move(mark));
   }

@@ -62,7 +62,7 @@ LensDistortion::LensDistortion(const Camera& camera, std::optional<double> subje
     const auto shown = [&](double sign) {
       const double by = sign * axis_step_rad * distance_;
       const Projection at = camera_.project({by * x, by * y, pinhole_.z_mm - distance_});
-      if (at.status == ProjectionStatus::not_visible) throw Error(where + "the camera sees nothing about its axis");
+      if (at.status == AimStatus::no_ray) throw Error(where + "the camera sees nothing about its axis");
       return at.raster;
     };
     return (shown(1) - shown(-1)) / (2 * axis_step_rad);
@@ -77,7 +77,7 @@ LensDistortion::LensDistortion(const Camera& camera, std::optional<double> subje
 std::optional<Vec2<double>> LensDistortion::distorted(const Vec2<double>& undistorted) const noexcept {
   const Vec2<double> tangent = (undistorted - centre_) / focal_length_px_;
   const Projection at = camera_.project({tangent.x * distance_, -tangent.y * distance_, pinhole_.z_mm - distance_});
-  if (at.status == ProjectionStatus::not_visible) return {};
+  if (at.status == AimStatus::no_ray) return {};
   return at.raster;
 }
 

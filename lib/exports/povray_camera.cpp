@@ -32,7 +32,7 @@ struct Samples {
 
 Samples sampled(const Camera& camera, int first_row, std::uint32_t samples) {
   const Film& film = camera.film();
-  const HostFrame frame(Host::pbrt, camera.lens(), FrameOrigin::front_vertex, 1);
+  const HostFrame frame(Host::pbrt, camera.lens(), DistanceOrigin::front_vertex, 1);
   const auto width = static_cast<std::size_t>(film.columns), count = width * samples;
   std::array<std::vector<double>, 11> columns;
   for (auto& column : columns) column.resize(count);

@@ -26,7 +26,7 @@ std::optional<double> ChiefProfile::radius(double field) const {
   const double across = distance_ * std::sin(field);
   const Vec3<double> point{across * corner.x, across * corner.y, pupil_z_ - distance_ * std::cos(field)};
   const Projection found = camera_.project(point, wavelength_);
-  if (found.status == ProjectionStatus::not_visible) return {};
+  if (found.status == AimStatus::no_ray) return {};
   const Film& film = camera_.film();
   return corner.x * (found.raster.x - film.columns / 2.0) + corner.y * (film.rows / 2.0 - found.raster.y);
 }

@@ -37,16 +37,15 @@ struct FanErrors {
   std::string note;
 };
 
-std::string draw_fans(const Lens& lens, double subject_z, std::span<const RayFan> fans, const FanErrors& errors) {
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
-  if (fans.empty() || fans.size() % wavelengths != 0) {
-    throw Error(std::string(errors.function) + ": " + std::to_string(fans.size()) +
+std::string draw_fans(const Lens& lens, double subject_z, const Grid<RayFan>& fans, const FanErrors& errors) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size(), fields = fans.size();
+  if (fans.values.empty() || fans.columns != wavelengths) {
+    throw Error(std::string(errors.function) + ": " + std::to_string(fans.values.size()) +
                 " fans; must be one or more for each of the " + std::to_string(wavelengths) + " wavelengths");
   }
   constexpr double width = 960, left = 78, top = 84, height = 150, step = 214, cell = 380, second = left + cell + 92;
-  const std::size_t fields = fans.size() / wavelengths;
   double largest = 0;
-  for (const RayFan& fan : fans) {
+  for (const RayFan& fan : fans.values) {
     for (const RayFan::Point& point : fan.points) {
       for (const auto& error : {point.*errors.tangential, point.*errors.sagittal}) {
         largest = std::max(largest, std::abs(error.value_or(0)));
@@ -59,14 +58,14 @@ std::string draw_fans(const Lens& lens, double subject_z, std::span<const RayFan
   figure_detail::draw_head(svg, lens, errors.title, subject_z, lens.primary_wavelength());
   for (std::size_t f = 0; f < fields; ++f) {
     const double y = top + step * static_cast<double>(f);
-    const std::string name = figure_detail::field_text(fans[f * wavelengths].field_rad) + ", ";
+    const std::string name = figure_detail::field_text(fans[f].front().field_rad) + ", ";
     for (const bool tangential : {true, false}) {
       Axes axes(svg, tangential ? left : second, y, cell, height,
                 {-1, 1, name + (tangential ? "y on the stop" : "x on the stop")},
                 {-range, range, std::string(tangential ? errors.tangential_axis : errors.sagittal_axis)});
       for (std::size_t w = 0; w < wavelengths; ++w) {
         std::vector<Axes::Point> curve;
-        for (const RayFan::Point& point : fans[f * wavelengths + w].points) {
+        for (const RayFan::Point& point : fans[f][w].points) {
           const auto& error = point.*(tangential ? errors.tangential : errors.sagittal);
           curve.push_back({point.pupil, errors.scale * error.value_or(nothing)});
         }
@@ -86,7 +85,7 @@ std::string draw_fans(const Lens& lens, double subject_z, std::span<const RayFan
 
 }  // namespace
 
-std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+std::string fan_figure(const Lens& lens, double subject_z, const Grid<RayFan>& fans) {
   return draw_fans(lens, subject_z, fans,
                    {"fan_figure", "Ray fans", &RayFan::Point::tangential_mm, &RayFan::Point::sagittal_mm, 1000,
                     "error of y (\u00b5m)", "error of x (\u00b5m)",
@@ -95,7 +94,7 @@ std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFa
                         " nm. Curves end where the lens clips the rays. Exact rays."});
 }
 
-std::string wavefront_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+std::string wavefront_figure(const Lens& lens, double subject_z, const Grid<RayFan>& fans) {
   return draw_fans(lens, subject_z, fans,
                    {"wavefront_figure", "Wavefront", &RayFan::Point::tangential_waves, &RayFan::Point::sagittal_waves,
                     1, "error (waves)", "error (waves)",
@@ -146,15 +145,15 @@ std::string field_figure(const Lens& lens, double subject_z, double field_rad) {
   return std::move(svg).finish();
 }
 
-std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points) {
-  if (points.empty()) throw Error("mtf_figure: there are no points; must be at least one");
+std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
+  if (points.values.empty()) throw Error("mtf_figure: there are no points; must be at least one");
   constexpr double width = 960, left = 78, top = 84, height = 360;
   double highest = 0;
-  for (const MtfPoint& point : points) highest = std::max(highest, point.frequency_per_mm);
+  for (const MtfPoint& point : points.values) highest = std::max(highest, point.frequency_per_mm);
   std::vector<figure_detail::Key> keys;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0 && points[i].field_rad == points[i - 1].field_rad) continue;
-    keys.push_back({figure_detail::field_colour(keys.size()), figure_detail::field_text(points[i].field_rad)});
+  for (std::size_t field = 0; field < points.size(); ++field) {
+    const std::string name = figure_detail::field_text(points[field].front().field_rad);
+    keys.push_back({figure_detail::field_colour(field), name});
   }
   keys.push_back({"#888", "diffraction limit on the axis"});
   const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width, keys);
@@ -171,23 +170,20 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
   }
   axes.curve(limit, "fill=\"none\" stroke=\"#888\" stroke-width=\"1\"");
   figure_detail::draw_keys(svg, left, y, width, keys);
-  std::size_t field = 0;
-  for (std::size_t begin = 0; begin < points.size(); ++field) {
-    std::size_t end = begin;
+  for (std::size_t field = 0; field < points.size(); ++field) {
     std::vector<Axes::Point> tangential, sagittal;
-    for (; end < points.size() && points[end].field_rad == points[begin].field_rad; ++end) {
-      tangential.push_back({points[end].frequency_per_mm, points[end].tangential});
-      sagittal.push_back({points[end].frequency_per_mm, points[end].sagittal});
+    for (const MtfPoint& point : points[field]) {
+      tangential.push_back({point.frequency_per_mm, point.tangential});
+      sagittal.push_back({point.frequency_per_mm, point.sagittal});
     }
     const std::string_view colour = figure_detail::field_colour(field);
     axes.curve(tangential, curve_style(colour));
     axes.curve(sagittal, curve_style(colour, "stroke-dasharray=\"5 3\""));
-    begin = end;
   }
   svg.text(figure_detail::sheet_margin, last_y + 24,
            "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, diffraction "
            "decides. " +
-               figure_detail::sampling_error_text(points) + ".",
+               figure_detail::sampling_error_text(points.values) + ".",
            figure_detail::small_text);
   return std::move(svg).finish();
 }

@@ -28,9 +28,18 @@ constexpr std::string_view side_style = "fill=\"none\" stroke=\"#9bd3ab\" stroke
 constexpr std::string_view lens_style = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\"";
 constexpr std::string_view cone_style = "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"";
 
+/// The parameters of focal_surface_figure().
+struct View {
+  std::string_view title, remark;
+  const IdealLens& lens;
+  const Film& film;
+  const FocalSurface& surface;
+  std::span<const FocalPoint> points;
+};
+
 class FocalSurfaceFigure {
  public:
-  explicit FocalSurfaceFigure(const FocalSurfaceView& view) : view_(view) {
+  explicit FocalSurfaceFigure(const View& view) : view_(view) {
     double farthest = 0;
     for (const FocalPoint& point : view.points) {
       const bool sharp = point.inverse_distance.value_or(0) > 0 && point.blur_mm == 0;
@@ -123,19 +132,19 @@ class FocalSurfaceFigure {
     }
   }
 
-  const FocalSurfaceView& view_;
+  const View& view_;
   double reach_ = 0;
 };
 
 }  // namespace
 
-std::string focal_surface_figure(const FocalSurfaceView& view) {
-  const Film& film = view.film;
+std::string focal_surface_figure(std::string_view title, std::string_view remark, const IdealLens& lens,
+                                 const Film& film, const FocalSurface& surface, std::span<const FocalPoint> points) {
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.z()))) {
     throw Error("focal_surface_figure: film size = " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
                 " mm at a finite z; both sides must be positive");
   }
-  return FocalSurfaceFigure(view).draw();
+  return FocalSurfaceFigure({title, remark, lens, film, surface, points}).draw();
 }
 
 }  // namespace petzval

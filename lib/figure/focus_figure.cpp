@@ -24,28 +24,31 @@ constexpr double width = 960, left = 78, right = 24, top = 140, plot_height = 34
 constexpr std::uint32_t rays = 4096;
 
 /// The rays of a field at all wavelengths.
-std::vector<Spot> spots_of(const Lens& lens, const FieldPoint& point) {
-  std::vector<Spot> spots;
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    spots.push_back(analysis_detail::trace_spot(lens, point, w, rays));
+Grid<Spot> spots_of(const Lens& lens, const FieldPoint& point) {
+  Grid<Spot> spots{{}, lens.wavelengths_nm().size()};
+  for (std::size_t w = 0; w < spots.columns; ++w) {
+    spots.values.push_back(analysis_detail::trace_spot(lens, point, w, rays));
   }
   return spots;
 }
 
 class FocusFigure {
  public:
-  FocusFigure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
-      : lens_(lens), subject_z_(spots.front().point.z), weights_(std::move(weights)) {
-    const std::size_t wavelengths = weights_.size();
+  FocusFigure(const Lens& lens, const Grid<Spot>& spots, std::vector<double> weights)
+      : lens_(lens), subject_z_(spots.values.front().point.z), weights_(std::move(weights)) {
+    const Grid<double> of_rays = analysis_detail::ray_weights("focus_figure", spots, weights_);
     bool has_axis = false;
-    for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
-      fields_.push_back(spots[first].point.field_rad);
-      curves_.push_back(parabola(spots.subspan(first, wavelengths)));
+    for (std::size_t field = 0; field < spots.size(); ++field) {
+      fields_.push_back(spots[field].front().point.field_rad);
+      curves_.push_back(parabola(spots[field], of_rays[field]));
       if (fields_.back() != 0) continue;
       has_axis = true;
       axis_ = curves_.back();
     }
-    if (!has_axis) axis_ = parabola(spots_of(lens, {0, subject_z_}));
+    if (!has_axis) {
+      const Grid<Spot> axis = spots_of(lens, {0, subject_z_});
+      axis_ = parabola(axis.values, analysis_detail::ray_weights("focus_figure", axis, weights_).values);
+    }
     mean_ = analysis_detail::mean(curves_);
     const double paraxial = paraxial_image_z(lens, subject_z_, lens.primary_wavelength(), main_meridian(lens));
     paraxial_ = std::isfinite(paraxial);
@@ -111,10 +114,8 @@ class FocusFigure {
   using Parabola = analysis_detail::BlurParabola;
 
   /// RMS radius over z of the film, lens frame.
-  std::optional<Parabola> parabola(std::span<const Spot> spots) const {
-    auto found = analysis_detail::SpotMoments(
-                     spots, analysis_detail::ray_weights("focus_figure", spots, weights_.size(), weights_))
-                     .parabola();
+  std::optional<Parabola> parabola(std::span<const Spot> spots, std::span<const double> ray_weights) const {
+    auto found = analysis_detail::SpotMoments(spots, ray_weights).parabola();
     if (found) found->best += lens_.film_z();
     return found;
   }
@@ -170,15 +171,15 @@ class FocusFigure {
 
 std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                          std::span<const double> wavelength_weights) {
-  std::vector<Spot> spots;
+  Grid<Spot> spots{{}, lens.wavelengths_nm().size()};
   for (const double field : fields_rad) {
-    for (Spot& spot : spots_of(lens, {field, subject_z})) spots.push_back(std::move(spot));
+    for (Spot& spot : spots_of(lens, {field, subject_z}).values) spots.values.push_back(std::move(spot));
   }
   return focus_figure(lens, spots, wavelength_weights);
 }
 
-std::string focus_figure(const Lens& lens, std::span<const Spot> spots, std::span<const double> wavelength_weights) {
-  if (spots.empty()) throw Error("focus_figure: fields = 0; must be at least 1");
+std::string focus_figure(const Lens& lens, const Grid<Spot>& spots, std::span<const double> wavelength_weights) {
+  if (spots.values.empty()) throw Error("focus_figure: fields = 0; must be at least 1");
   return FocusFigure(lens, spots, figure_detail::checked_weights("focus_figure", lens, wavelength_weights)).draw();
 }
 

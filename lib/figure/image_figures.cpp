@@ -29,23 +29,23 @@ constexpr std::string_view dashes = "stroke-dasharray=\"5 3\"";
 
 }  // namespace
 
-std::string energy_figure(const Lens& lens, double subject_z, std::span<const EncircledEnergy> points) {
-  if (points.empty()) throw Error("energy_figure: there are no points; must be at least one");
+std::string energy_figure(const Lens& lens, double subject_z, const Grid<EncircledEnergy>& points) {
+  if (points.values.empty()) throw Error("energy_figure: there are no points; must be at least one");
   constexpr double top_with_mark = top + 16, most = 0.98, stated = 0.95;
   const double airy = 1000 * airy_radius(lens, lens.primary_wavelength());  // um
   double range = std::isfinite(airy) ? 1.3 * airy : 0, error = 0;
   std::vector<Key> keys;
   std::vector<std::vector<Axes::Point>> curves;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const EncircledEnergy& point = points[i];
-    if (i == 0 || point.field_rad != points[i - 1].field_rad) {
-      keys.push_back({figure_detail::field_colour(keys.size()), figure_detail::field_text(point.field_rad)});
-      curves.push_back({{0, 0}});
+  for (std::size_t field = 0; field < points.size(); ++field) {
+    const std::string name = figure_detail::field_text(points[field].front().field_rad);
+    keys.push_back({figure_detail::field_colour(field), name});
+    curves.push_back({{0, 0}});
+    for (const EncircledEnergy& point : points[field]) {
+      if (!point.radius_mm) continue;
+      curves.back().push_back({1000 * *point.radius_mm, point.fraction});
+      if (point.fraction <= most) range = std::max(range, 1050 * *point.radius_mm);
+      if (point.fraction <= stated) error = std::max(error, point.sampling_error_mm);
     }
-    if (!point.radius_mm) continue;
-    curves.back().push_back({1000 * *point.radius_mm, point.fraction});
-    if (point.fraction <= most) range = std::max(range, 1050 * *point.radius_mm);
-    if (point.fraction <= stated) error = std::max(error, point.sampling_error_mm);
   }
   if (!(range > 0 && std::isfinite(range))) range = 1;
   const double y = top_with_mark + height + 58, last_y = y + figure_detail::key_rows(left, width - right, keys);
@@ -65,42 +65,36 @@ std::string energy_figure(const Lens& lens, double subject_z, std::span<const En
   return std::move(svg).finish();
 }
 
-std::string mtf_field_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points) {
-  std::vector<double> frequencies, fields;
-  for (const MtfPoint& point : points) {
-    if (std::ranges::find(frequencies, point.frequency_per_mm) == frequencies.end()) {
-      frequencies.push_back(point.frequency_per_mm);
-    }
-    if (fields.empty() || fields.back() != point.field_rad) fields.push_back(point.field_rad);
-  }
-  if (fields.size() < 2 || points.size() != fields.size() * frequencies.size()) {
-    throw Error("mtf_field_figure: " + std::to_string(fields.size()) + " fields and " + std::to_string(points.size()) +
-                " points; must be two or more fields with the same frequencies");
+std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
+  if (points.size() < 2) {
+    throw Error("mtf_field_figure: " + std::to_string(points.size()) + " fields; must be two or more");
   }
   std::vector<Key> keys;
-  for (const double frequency : frequencies) {
-    keys.push_back({figure_detail::field_colour(keys.size()), to_text(frequency, 4) + " line pairs per mm"});
+  for (const MtfPoint& point : points[0]) {
+    keys.push_back(
+        {figure_detail::field_colour(keys.size()), to_text(point.frequency_per_mm, 4) + " line pairs per mm"});
   }
   const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width - right, keys);
   figure_detail::Svg svg(width, last_y + 58);
   figure_detail::draw_head(svg, lens, "Geometric MTF over the field", subject_z, lens.primary_wavelength());
-  const auto [least, most] = std::ranges::minmax(fields);
-  Axes axes(svg, left, top, width - left - right, height, {degrees(least), degrees(most), "field angle (\u00b0)"},
-            {0, 1, "contrast"});
-  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+  const auto [least, most] = std::ranges::minmax(points.values, {}, &MtfPoint::field_rad);
+  Axes axes(svg, left, top, width - left - right, height,
+            {degrees(least.field_rad), degrees(most.field_rad), "field angle (\u00b0)"}, {0, 1, "contrast"});
+  for (std::size_t k = 0; k < keys.size(); ++k) {
     std::vector<Axes::Point> tangential, sagittal;
-    for (std::size_t i = k; i < points.size(); i += frequencies.size()) {
-      const bool dark = points[i].tangential == 0 && points[i].sagittal == 0;
-      tangential.push_back({degrees(points[i].field_rad), dark ? nothing : points[i].tangential});
-      sagittal.push_back({degrees(points[i].field_rad), dark ? nothing : points[i].sagittal});
+    for (std::size_t field = 0; field < points.size(); ++field) {
+      const MtfPoint& point = points[field][k];
+      const bool dark = point.tangential == 0 && point.sagittal == 0;
+      tangential.push_back({degrees(point.field_rad), dark ? nothing : point.tangential});
+      sagittal.push_back({degrees(point.field_rad), dark ? nothing : point.sagittal});
     }
     axes.curve(tangential, curve_style(keys[k].colour));
     axes.curve(sagittal, curve_style(keys[k].colour, dashes));
   }
   figure_detail::draw_keys(svg, left, y, width - right, keys);
   svg.text(figure_detail::sheet_margin, last_y + 24,
-           "Solid: tangential, dashed: sagittal, straight lines between " + std::to_string(fields.size()) +
-               " fields. Rays only, without diffraction. " + figure_detail::sampling_error_text(points) + ".",
+           "Solid: tangential, dashed: sagittal, straight lines between " + std::to_string(points.size()) +
+               " fields. Rays only, without diffraction. " + figure_detail::sampling_error_text(points.values) + ".",
            figure_detail::small_text);
   return std::move(svg).finish();
 }
@@ -120,7 +114,7 @@ std::string colour_figure(const Lens& lens, double subject_z, double field_rad) 
   }
   std::vector<std::vector<Axes::Point>> tangential(wavelengths), sagittal(wavelengths), shifts(wavelengths);
   double focus_range = 0, shift_range = 0;
-  for (const AxialRayFocus& focus : longitudinal_aberration(lens, subject_z)) {
+  for (const AxialRayFocus& focus : longitudinal_aberration(lens, subject_z).values) {
     const auto take = [&](std::vector<Axes::Point>& curve, const std::optional<double>& value) {
       curve.push_back({value.value_or(nothing), focus.pupil});
       focus_range = std::max(focus_range, std::abs(value.value_or(0)));

@@ -31,12 +31,12 @@ constexpr std::size_t drawn_rays = 600;
 
 class SpotFigure {
  public:
-  SpotFigure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
+  SpotFigure(const Lens& lens, const Grid<Spot>& spots, std::vector<double> weights)
       : lens_(lens),
         spots_(spots),
         weights_(std::move(weights)),
         wavelengths_(lens.wavelengths_nm().size()),
-        rows_(spots.size() / wavelengths_),
+        rows_(spots.size()),
         columns_(wavelengths_ == 1 ? 1 : 1 + wavelengths_),
         looks_(figure_detail::looks(lens.wavelengths_nm())),
         f_number_(film_side_f_number(lens)),
@@ -63,7 +63,7 @@ class SpotFigure {
   }
 
  private:
-  std::span<const Spot> of(std::size_t row) const { return spots_.subspan(row * wavelengths_, wavelengths_); }
+  std::span<const Spot> of(std::size_t row) const { return spots_[row]; }
   double airy(std::size_t w) const { return airy_radius(lens_, w); }
   double cell_x(std::size_t column) const { return left + static_cast<double>(column) * (cell + gap); }
   double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + caption_height + gap); }
@@ -81,7 +81,7 @@ class SpotFigure {
   }
 
   void title() {
-    figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, lens_.primary_wavelength());
+    figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.values.front().point.z, lens_.primary_wavelength());
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
       svg_.path(ray_marker(looks_[w].marker, x + 4, 65), stroke(w));
@@ -149,8 +149,9 @@ class SpotFigure {
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell.",
         small_text);
     svg_.text(gap, y + 40,
-              std::to_string(spots_.front().sent) + " rays sent per spot, at most " + std::to_string(drawn_rays) +
-                  " drawn. Wavelengths have " + figure_detail::weights_text(weights_) + ".",
+              std::to_string(spots_.values.front().sent) + " rays sent per spot, at most " +
+                  std::to_string(drawn_rays) + " drawn. Wavelengths have " + figure_detail::weights_text(weights_) +
+                  ".",
               small_text);
     // A closed stop has no Airy circle.
     if (!std::isfinite(f_number_)) return;
@@ -163,7 +164,7 @@ class SpotFigure {
   }
 
   const Lens& lens_;
-  std::span<const Spot> spots_;
+  const Grid<Spot>& spots_;
   std::vector<double> weights_;
   std::size_t wavelengths_, rows_, columns_;
   std::vector<figure_detail::Look> looks_;
@@ -175,13 +176,11 @@ class SpotFigure {
 
 }  // namespace
 
-std::string spot_figure(const Lens& lens, std::span<const Spot> spots, std::span<const double> wavelength_weights) {
+std::string spot_figure(const Lens& lens, const Grid<Spot>& spots, std::span<const double> wavelength_weights) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  bool ordered = !spots.empty() && spots.size() % wavelengths == 0;
-  for (std::size_t i = 0; ordered && i < spots.size(); ++i) ordered = spots[i].wavelength == i % wavelengths;
-  if (!ordered) {
-    throw Error("spot_figure: spots = " + std::to_string(spots.size()) + "; must be fields by " +
-                std::to_string(wavelengths) + " wavelengths in the order of spot_diagram");
+  if (spots.values.empty() || spots.columns != wavelengths) {
+    throw Error("spot_figure: spots = " + std::to_string(spots.values.size()) + "; must be fields by " +
+                std::to_string(wavelengths) + " wavelengths");
   }
   return SpotFigure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();
 }

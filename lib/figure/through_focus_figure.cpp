@@ -31,21 +31,21 @@ Vec2<double> offset(const Spot& spot, std::size_t ray, const ThroughFocusSpot& o
 
 }  // namespace
 
-std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, std::span<const double> film_shifts_mm,
+std::string through_focus_figure(const Lens& lens, const Grid<Spot>& spots, std::span<const double> film_shifts_mm,
                                  std::span<const double> wavelength_weights) {
   const std::size_t wavelengths = lens.wavelengths_nm().size(), columns = film_shifts_mm.size();
-  if (spots.empty() || columns == 0) {
-    throw Error("through_focus_figure: " + std::to_string(spots.size()) + " spots and " + std::to_string(columns) +
-                " films; must be at least 1 each");
+  if (spots.values.empty() || columns == 0) {
+    throw Error("through_focus_figure: " + std::to_string(spots.values.size()) + " spots and " +
+                std::to_string(columns) + " films; must be at least 1 each");
   }
   const auto weights = figure_detail::checked_weights("through_focus_figure", lens, wavelength_weights);
-  const auto cells = through_focus(spots, wavelengths, film_shifts_mm, weights);
-  const std::size_t rows = spots.size() / wavelengths, primary = lens.primary_wavelength();
+  const auto cells = through_focus(spots, film_shifts_mm, weights);
+  const std::size_t rows = spots.size(), primary = lens.primary_wavelength();
   const auto each_ray = [&](std::size_t row, std::size_t column, std::size_t w, const auto& see) {
-    const Spot& spot = spots[row * wavelengths + w];
+    const Spot& spot = spots[row][w];
     if (weights[w] == 0) return;
     for (std::size_t i = 0; i < std::min(drawn_rays, spot.x.size()); ++i) {
-      see(offset(spot, i, cells[row * columns + column]));
+      see(offset(spot, i, cells[row][column]));
     }
   };
 
@@ -53,7 +53,7 @@ std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, 
   double farthest = std::isfinite(airy) ? airy : 0, error = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < columns; ++column) {
-      error = std::max(error, cells[row * columns + column].sampling_error_mm);
+      error = std::max(error, cells[row][column].sampling_error_mm);
       for (std::size_t w = 0; w < wavelengths; ++w) {
         each_ray(row, column, w, [&](const Vec2<double>& at) {
           farthest = std::max({farthest, std::abs(at.x), std::abs(at.y)});
@@ -66,7 +66,7 @@ std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, 
   const double step = cell + caption_height + gap, end = top + step * static_cast<double>(rows);
 
   Svg svg(width, end + bottom);
-  figure_detail::draw_head(svg, lens, "Spots through focus", spots.front().point.z, primary);
+  figure_detail::draw_head(svg, lens, "Spots through focus", spots.values.front().point.z, primary);
   const auto looks = figure_detail::looks(lens.wavelengths_nm());
   const auto stroke = [&](std::size_t w) {
     return "fill=\"none\" stroke=\"" + std::string(looks[w].colour) + "\" stroke-width=\"0.8\"";
@@ -85,7 +85,7 @@ std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, 
   }
   for (std::size_t row = 0; row < rows; ++row) {
     const double y = top + step * static_cast<double>(row), cy = y + cell / 2;
-    svg.text(gap, cy + 4, "field " + figure_detail::field_text(spots[row * wavelengths].point.field_rad),
+    svg.text(gap, cy + 4, "field " + figure_detail::field_text(spots[row].front().point.field_rad),
              "font-weight=\"bold\"");
     for (std::size_t column = 0; column < columns; ++column) {
       const double x = left + (cell + gap) * static_cast<double>(column), cx = x + cell / 2;
@@ -100,7 +100,7 @@ std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, 
       if (airy * scale < cell / 2) {
         svg.circle(cx, cy, airy * scale, "fill=\"none\" stroke=\"#000\" stroke-width=\"1\" stroke-dasharray=\"3 2\"");
       }
-      const auto& rms = cells[row * columns + column].rms_radius_mm;
+      const auto& rms = cells[row][column].rms_radius_mm;
       svg.text(cx, y + cell + 15, rms ? "RMS " + figure_detail::length_text(*rms) : "no rays", small_centred);
     }
   }
@@ -111,7 +111,7 @@ std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots, 
            small_text);
   svg.text(gap, end + 51,
            (std::isfinite(airy) ? "Dashed: Airy circle, " + figure_detail::length_text(airy) + ". " : std::string()) +
-               std::to_string(spots.front().sent) + " rays sent per field and wavelength, at most " +
+               std::to_string(spots.values.front().sent) + " rays sent per field and wavelength, at most " +
                std::to_string(drawn_rays) +
                " drawn. Sampling error of RMS (from quarters of the rays): " + figure_detail::length_text(error) + ".",
            small_text);

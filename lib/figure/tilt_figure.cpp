@@ -69,7 +69,7 @@ class TiltFigure {
       up_ = {n.x / lean, n.y / lean, 0};
       if (std::abs(up_.y) >= std::abs(up_.x) ? up_.y < 0 : up_.x < 0) up_ = -up_;
     }
-    for (const TiltFigurePoint& p : view.points) images_.push_back(view.lens.image(p.point));
+    for (const FocusTarget& p : view.points) images_.push_back(view.lens.image(p.point));
     // Half the rectangle's extent along the section.
     film_half_ = (std::abs(up_.x) * view.after.width_mm + std::abs(up_.y) * view.after.height_mm) / 2;
     lens_half_ = std::isfinite(view.lens.pupils.entrance.diameter) ? view.lens.pupils.entrance.diameter / 2 : 0;
@@ -159,8 +159,8 @@ class TiltFigure {
     const IdealLens& lens = view_.lens;
     SectionBox box({film_.z(), 0});
     box.take({lens.front_focal_z, 0});
-    for (const TiltFigurePoint& p : view_.points) {
-      if (p.used && !p.point.at_infinity) box.take(section(p.point.position));
+    for (const FocusTarget& p : view_.points) {
+      if (p.weight > 0 && !p.point.at_infinity) box.take(section(p.point.position));
     }
     const double reach = std::max(box.length(), 5 * std::abs(lens.front_focal_length));
     if (focus_) {
@@ -172,8 +172,8 @@ class TiltFigure {
       }
     }
     // Unused points are included only if they are near.
-    for (const TiltFigurePoint& p : view_.points) {
-      if (p.used || p.point.at_infinity) continue;
+    for (const FocusTarget& p : view_.points) {
+      if (p.weight > 0 || p.point.at_infinity) continue;
       const SectionPoint at = section(p.point.position);
       if (std::abs(at.z - lens.front_focal_z) < 1.5 * reach && std::abs(at.height) < reach) box.take(at);
     }
@@ -285,9 +285,9 @@ class TiltFigure {
     const auto [low, high] = film_ends(film_);
     panel.stroke(low, high, film_style);
     for (std::size_t i = 0; i < view_.points.size(); ++i) {
-      const TiltFigurePoint& p = view_.points[i];
+      const FocusTarget& p = view_.points[i];
       if (!p.point.at_infinity)
-        panel.mark(section(p.point.position), i + 1, p.used, 4);
+        panel.mark(section(p.point.position), i + 1, p.weight > 0, 4);
       else
         draw_direction(panel, box, i);
     }
@@ -308,7 +308,7 @@ class TiltFigure {
     const double film_distance = box.z_min - view_.lens.front_principal_z();
     const SectionPoint end{box.z_min, film_distance * d.height / d.z}, start{0.94 * end.z, 0.94 * end.height};
     panel.stroke(start, end, chief_style);
-    panel.mark(start, i + 1, view_.points[i].used, 4);
+    panel.mark(start, i + 1, view_.points[i].weight > 0, 4);
   }
 
   void draw_close(Svg& svg, double y, const SceneFrame& frame) const {
@@ -337,7 +337,7 @@ class TiltFigure {
     const auto [low, high] = film_ends(film_);
     panel.stroke(low, high, film_style);
     for (std::size_t i = 0; i < images_.size(); ++i) {
-      if (images_[i]) panel.mark(section(images_[i]->position), i + 1, view_.points[i].used, 2.5);
+      if (images_[i]) panel.mark(section(images_[i]->position), i + 1, view_.points[i].weight > 0, 2.5);
     }
     svg.text(panel.x(low) - 6, panel.y(low) + 14, "film, " + degrees_text(view_.after.angle()),
              "font-size=\"11\" fill=\"#333\" text-anchor=\"end\"");

@@ -25,8 +25,8 @@ struct Curve {
   std::vector<Axes::Point> points;  ///< transmittance in percent
 };
 
-double percent(const FieldTransmittance& point) {
-  return point.value ? 100 * *point.value : std::numeric_limits<double>::quiet_NaN();
+double percent(const std::optional<double>& value) {
+  return value ? 100 * *value : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string draw_curves(const Lens& lens, double subject_z, std::string_view title, figure_detail::Axis horizontal,
@@ -53,57 +53,55 @@ std::string draw_curves(const Lens& lens, double subject_z, std::string_view tit
   return std::move(svg).finish();
 }
 
-/// Checks that there are points of all compiled wavelengths; returns the number of fields.
-std::size_t field_count(const char* function, const Lens& lens, std::span<const FieldTransmittance> points) {
+/// Checks that there are values of all fields and compiled wavelengths.
+void check(const char* function, const Lens& lens, std::span<const double> fields_rad,
+           const Grid<std::optional<double>>& values) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  if (points.empty() || points.size() % wavelengths != 0) {
-    throw Error(std::string(function) + ": " + std::to_string(points.size()) +
-                " points; must be one or more for each of the " + std::to_string(wavelengths) + " wavelengths");
+  if (fields_rad.empty() || values.columns != wavelengths || values.size() != fields_rad.size()) {
+    throw Error(std::string(function) + ": " + std::to_string(values.values.size()) +
+                " values; must be one for each of the " + std::to_string(fields_rad.size()) + " fields and " +
+                std::to_string(wavelengths) + " wavelengths");
   }
-  return points.size() / wavelengths;
 }
 
 }  // namespace
 
-std::string transmittance_figure(const Lens& lens, double subject_z, std::span<const FieldTransmittance> points) {
-  const std::size_t fields = field_count("transmittance_figure", lens, points);
+std::string transmittance_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                 const Grid<std::optional<double>>& values) {
+  check("transmittance_figure", lens, fields_rad, values);
   const auto nm = lens.wavelengths_nm();
   if (nm.size() < 2) throw Error("transmittance_figure: one wavelength; must be at least two");
   std::vector<std::size_t> order(nm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t w) { return nm[w]; });
   std::vector<Curve> curves;
-  for (std::size_t f = 0; f < fields; ++f) {
-    const auto own = points.subspan(f * nm.size(), nm.size());
-    const bool dark =
-        std::ranges::none_of(own, [](const FieldTransmittance& point) { return point.value.has_value(); });
-    Curve curve{{figure_detail::field_colour(f),
-                 figure_detail::field_text(own.front().field_rad) + (dark ? " (no light)" : "")},
-                {}};
-    for (const std::size_t w : order) curve.points.push_back({nm[w], percent(own[w])});
+  for (std::size_t f = 0; f < fields_rad.size(); ++f) {
+    const bool dark = std::ranges::none_of(values[f], [](const auto& value) { return value.has_value(); });
+    Curve curve{
+        {figure_detail::field_colour(f), figure_detail::field_text(fields_rad[f]) + (dark ? " (no light)" : "")}, {}};
+    for (const std::size_t w : order) curve.points.push_back({nm[w], percent(values[f][w])});
     curves.push_back(std::move(curve));
   }
   return draw_curves(lens, subject_z, "Transmittance", {nm[order.front()], nm[order.back()], "wavelength (nm)"},
                      curves);
 }
 
-std::string transmittance_field_figure(const Lens& lens, double subject_z, std::span<const FieldTransmittance> points) {
-  const std::size_t fields = field_count("transmittance_field_figure", lens, points);
-  if (fields < 2) throw Error("transmittance_field_figure: one field; must be at least two");
+std::string transmittance_field_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                       const Grid<std::optional<double>>& values) {
+  check("transmittance_field_figure", lens, fields_rad, values);
+  if (fields_rad.size() < 2) throw Error("transmittance_field_figure: one field; must be at least two");
   const auto nm = lens.wavelengths_nm();
   const std::vector<figure_detail::Look> looks = figure_detail::looks(nm);
   std::vector<Curve> curves;
   for (std::size_t w = 0; w < nm.size(); ++w) {
     Curve curve{{looks[w].colour, to_text(nm[w], 6) + " nm"}, {}};
-    for (std::size_t f = 0; f < fields; ++f) {
-      const FieldTransmittance& point = points[f * nm.size() + w];
-      curve.points.push_back({degrees(point.field_rad), percent(point)});
+    for (std::size_t f = 0; f < fields_rad.size(); ++f) {
+      curve.points.push_back({degrees(fields_rad[f]), percent(values[f][w])});
     }
     curves.push_back(std::move(curve));
   }
   return draw_curves(lens, subject_z, "Transmittance over the field",
-                     {degrees(points.front().field_rad), degrees(points.back().field_rad), "field angle (\u00b0)"},
-                     curves);
+                     {degrees(fields_rad.front()), degrees(fields_rad.back()), "field angle (\u00b0)"}, curves);
 }
 
 }  // namespace petzval

@@ -65,19 +65,19 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   fit.rank = problem.rank;
   fit.film = options.film;
   if (problem.rank == PlaneRank::none) {
-    fit.status = TiltFitStatus::no_targets;
+    fit.status = FocusStatus::no_targets;
   } else if (!solution.converged) {
-    fit.status = TiltFitStatus::not_converged;
+    fit.status = FocusStatus::not_converged;
   } else {
     Film film = problem.frame.film(solution.film, options.film);
     const std::optional<FilmPoint> centre = carried_centre(lens, options.film, film);
     if (centre) film.shift_x_mm = centre->x, film.shift_y_mm = centre->y;
     if (!centre || !clear_of_lens(lens, film)) {
-      fit.status = TiltFitStatus::unreachable;
+      fit.status = FocusStatus::unreachable;
     } else {
-      fit.status = solution.limited                   ? TiltFitStatus::limited
-                   : problem.rank == PlaneRank::plane ? TiltFitStatus::solved
-                                                      : TiltFitStatus::least_tilt;
+      fit.status = solution.limited                   ? FocusStatus::limited
+                   : problem.rank == PlaneRank::plane ? FocusStatus::solved
+                                                      : FocusStatus::least_tilt;
       fit.film = film;
     }
   }
@@ -112,18 +112,6 @@ TiltSolution solved(const TiltProblem& problem) {
 }
 
 }  // namespace
-
-std::string_view status_name(TiltFitStatus status) noexcept {
-  switch (status) {
-    case TiltFitStatus::solved: return "solved";
-    case TiltFitStatus::least_tilt: return "least_tilt";
-    case TiltFitStatus::limited: return "limited";
-    case TiltFitStatus::no_targets: return "no_targets";
-    case TiltFitStatus::unreachable: return "unreachable";
-    case TiltFitStatus::not_converged: return "not_converged";
-  }
-  return "unknown";
-}
 
 TiltFit fit_film(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given,
                  const RobustWeights& robust_weights) {

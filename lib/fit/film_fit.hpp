@@ -21,6 +21,5 @@ TiltFit fit_film(const IdealLens& lens, std::span<const FocusTarget> targets, co
 /// With exact rays; TiltOptions::rays is ignored.
 TiltFit fit_film(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
                  const RobustWeights& robust_weights);
-std::string_view status_name(TiltFitStatus status) noexcept;
 
 }  // namespace petzval::fit_detail

@@ -190,8 +190,6 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const I
 
 namespace petzval {
 
-std::string_view name(TiltFitStatus status) noexcept { return fit_detail::status_name(status); }
-
 TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
   return fit_detail::fit_film(lens, targets, options, fit_detail::robust_weights);
 }

@@ -85,7 +85,7 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
 /// @param blur_of the blur, on a film, of a target that has an image
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Request> requests,
                     const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
-  using enum AutofocusStatus;
+  using enum FocusStatus;
   Autofocus result;
   result.status = !found ? no_targets : std::isfinite(*found) && *found > lens.rear_z ? solved : unreachable;
   result.film = result ? moved(before, *found) : before;
@@ -132,15 +132,6 @@ double film_of(const focus_detail::Image& image, double target_blur) noexcept {
 }
 
 }  // namespace
-
-std::string_view name(AutofocusStatus status) noexcept {
-  switch (status) {
-    case AutofocusStatus::solved: return "solved";
-    case AutofocusStatus::no_targets: return "no_targets";
-    case AutofocusStatus::unreachable: return "unreachable";
-  }
-  return "unknown";
-}
 
 Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets, const Film& film) {
   const Film before = standing(film, lens.rear_focal_z);

@@ -35,10 +35,14 @@ std::string_view name(DistanceOrigin origin) noexcept {
 std::string_view name(FocusStatus status) noexcept {
   switch (status) {
     case FocusStatus::solved: return "solved";
+    case FocusStatus::least_tilt: return "least_tilt";
+    case FocusStatus::limited: return "limited";
     case FocusStatus::unreachable: return "unreachable";
     case FocusStatus::no_rays: return "no_rays";
     case FocusStatus::afocal: return "afocal";
     case FocusStatus::too_blurred: return "too_blurred";
+    case FocusStatus::no_targets: return "no_targets";
+    case FocusStatus::not_converged: return "not_converged";
   }
   return "unknown";
 }

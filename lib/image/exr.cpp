@@ -59,13 +59,10 @@ void validate(const ExrPart& part) {
                 " pixels; must be 0 or more, and less than half of " + size_of(part));
   }
   if (part.channels.empty()) throw Error(where + "no channel; must be at least one");
-  std::set<std::string_view> names;
-  for (const ExrChannel& channel : part.channels) {
-    if (channel.name.empty()) throw Error(where + "a channel has no name; must not be empty");
-    if (!names.insert(channel.name).second)
-      throw Error(where + "channel " + channel.name + " is a duplicate; must be unique");
-    if (channel.values.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
-      throw Error(where + "channel " + channel.name + ": values = " + std::to_string(channel.values.size()) +
+  for (const auto& [name, values] : part.channels) {
+    if (name.empty()) throw Error(where + "a channel has no name; must not be empty");
+    if (values.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
+      throw Error(where + "channel " + name + ": values = " + std::to_string(values.size()) +
                   "; must be one for each of " + size_of(part) + " pixels");
     }
   }
@@ -106,7 +103,7 @@ Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
   Imf::Header header(display, {first, first + Imath::V2i(part.width - 1, part.height - 1)});
   header.setType(Imf::SCANLINEIMAGE);
   const Imf::Channel type(part.half ? Imf::HALF : Imf::FLOAT);
-  for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, type);
+  for (const auto& [name, values] : part.channels) header.channels().insert(name, type);
   for (const auto& [name, text] : part.texts) insert<Imf::StringAttribute>(header, name, text);
   for (const auto& [name, number] : part.numbers) {
     if (is_among(standard_floats, name)) {
@@ -121,11 +118,13 @@ Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
 }
 
 /// The frame buffer of the channels. The first pixel is the upper left corner of the data window.
-Imf::FrameBuffer frame(std::span<ExrChannel> channels, const Imath::Box2i& window, int width, int height) {
+Imf::FrameBuffer frame(const ExrPart& part, const Imath::Box2i& window) {
   Imf::FrameBuffer buffer;
-  for (ExrChannel& channel : channels) {
-    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window.min, width, height,
-                                                 sizeof(float), sizeof(float) * static_cast<std::size_t>(width)));
+  const auto width = static_cast<std::size_t>(part.width);
+  for (const auto& [name, values] : part.channels) {
+    // A frame buffer needs mutable pixels; writing does not change the pixels.
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(values.data()), window.min, part.width,
+                                         part.height, sizeof(float), sizeof(float) * width));
   }
   return buffer;
 }
@@ -162,21 +161,20 @@ class Reader {
 
   int parts() const { return file_.parts(); }
 
-  /// Reads a part with the given channels in their order; all channels if none are given.
+  /// Reads a part with the given channels; all channels if none are given.
   ExrPart part(int index, std::span<const std::string_view> channel_names = {}) {
     const Imf::Header& header = file_.header(index);
     ExrPart part;
     read_attributes(header, part);
-    for (const std::string_view name : channel_names) part.channels.push_back({std::string(name), {}});
+    for (const std::string_view name : channel_names) part.channels[std::string(name)];
     if (channel_names.empty()) {
-      for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
-        part.channels.push_back({i.name(), {}});
+      for (auto i = header.channels().begin(); i != header.channels().end(); ++i) part.channels[i.name()];
     }
-    for (const ExrChannel& channel : part.channels) {
-      if (header.channels().findChannel(channel.name)) continue;
+    for (const auto& [missing, values] : part.channels) {
+      if (header.channels().findChannel(missing)) continue;
       std::string all;
       for (const std::string_view name : channel_names) all += (all.empty() ? "" : ", ") + std::string(name);
-      throw Error("no channel " + channel.name + "; must have " + all);
+      throw Error("no channel " + missing + "; must have " + all);
     }
 
     const Imath::Box2i window = header.dataWindow();
@@ -199,9 +197,9 @@ class Reader {
     const Imath::Box2i& display = header.displayWindow();
     const Imath::V2i before = display.min - window.min, after = window.max - display.max;
     if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
-    for (ExrChannel& channel : part.channels) channel.values.resize(static_cast<std::size_t>(width * height));
+    for (auto& [name, pixels] : part.channels) pixels.resize(static_cast<std::size_t>(width * height));
     Imf::InputPart in(file_, index);
-    in.setFrameBuffer(frame(part.channels, window, part.width, part.height));
+    in.setFrameBuffer(frame(part, window));
     in.readPixels(window.min.y, window.max.y);
     return part;
   }
@@ -227,17 +225,15 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const ExrPart& part = parts[i];
-      // A frame buffer needs mutable pixels; writing does not change the pixels.
-      const std::span channels(const_cast<ExrChannel*>(part.channels.data()), part.channels.size());
       Imf::OutputPart out_part(out, static_cast<int>(i));
-      Imf::FrameBuffer buffer = frame(channels, headers[i].dataWindow(), part.width, part.height);
+      Imf::FrameBuffer buffer = frame(part, headers[i].dataWindow());
       std::vector<std::vector<half>> halves;
       if (part.half) {
         const auto width = static_cast<std::size_t>(part.width);
-        for (const ExrChannel& channel : part.channels) {
-          halves.emplace_back(channel.values.begin(), channel.values.end());
-          buffer.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves.back().data(), headers[i].dataWindow().min,
-                                                       part.width, part.height, sizeof(half), sizeof(half) * width));
+        for (const auto& [name, values] : part.channels) {
+          halves.emplace_back(values.begin(), values.end());
+          buffer.insert(name, Imf::Slice::Make(Imf::HALF, halves.back().data(), headers[i].dataWindow().min, part.width,
+                                               part.height, sizeof(half), sizeof(half) * width));
         }
       }
       out_part.setFrameBuffer(buffer);
@@ -260,12 +256,6 @@ std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file) {
 
 ExrPart image_detail::read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels) {
   return read_exr_file(file, [&] { return Reader(file).part(0, channels); });
-}
-
-const std::vector<float>* image_detail::channel(const ExrPart& part, std::string_view name) noexcept {
-  const auto found =
-      std::find_if(part.channels.begin(), part.channels.end(), [&](const ExrChannel& own) { return own.name == name; });
-  return found == part.channels.end() ? nullptr : &found->values;
 }
 
 }  // namespace petzval

@@ -50,10 +50,9 @@ void write_exr(const RgbImage& image, const std::filesystem::path& file) {
   validate(image, file.string());
   ExrPart part{.width = image.width, .height = image.height};
   for (std::size_t c = 0; c < rgb_channels.size(); ++c) {
-    ExrChannel channel{std::string(rgb_channels[c]), {}};
-    channel.values.reserve(image.pixels.size() / 3);
-    for (std::size_t i = c; i < image.pixels.size(); i += 3) channel.values.push_back(image.pixels[i]);
-    part.channels.push_back(std::move(channel));
+    std::vector<float>& values = part.channels[std::string(rgb_channels[c])];
+    values.reserve(image.pixels.size() / 3);
+    for (std::size_t i = c; i < image.pixels.size(); i += 3) values.push_back(image.pixels[i]);
   }
   write_exr({&part, 1}, file);
 }
@@ -62,7 +61,7 @@ RgbImage read_exr(const std::filesystem::path& file) {
   const ExrPart part = image_detail::read_first_part(file, rgb_channels);
   RgbImage image(part.width, part.height);
   for (std::size_t c = 0; c < rgb_channels.size(); ++c) {
-    const std::vector<float>& values = part.channels[c].values;
+    const std::vector<float>& values = part.channels.at(std::string(rgb_channels[c]));
     for (std::size_t i = 0; i < values.size(); ++i) image.pixels[3 * i + c] = values[i];
   }
   return image;

@@ -28,14 +28,16 @@ IrisMap read_exr_map(const std::filesystem::path& file) {
   const ExrPart part = read_exr_parts(file).front();
   check_size(static_cast<std::size_t>(part.width), static_cast<std::size_t>(part.height), file);
   IrisMap map{part.width, part.height, {}};
-  using image_detail::channel;
-  if (const auto* const grey = channel(part, "Y")) {
-    map.values = *grey;
+  if (const auto grey = part.channels.find("Y"); grey != part.channels.end()) {
+    map.values = grey->second;
     return map;
   }
-  const auto *const red = channel(part, "R"), *const green = channel(part, "G"), *const blue = channel(part, "B");
-  if (!red || !green || !blue) throw Error(file.string() + ": channels are missing; must have Y, or R, G and B");
-  for (std::size_t i = 0; i < red->size(); ++i) map.values.push_back(((*red)[i] + (*green)[i] + (*blue)[i]) / 3);
+  for (const char* name : {"R", "G", "B"}) {
+    if (part.channels.contains(name)) continue;
+    throw Error(file.string() + ": channels are missing; must have Y, or R, G and B");
+  }
+  const std::vector<float>&red = part.channels.at("R"), &green = part.channels.at("G"), &blue = part.channels.at("B");
+  for (std::size_t i = 0; i < red.size(); ++i) map.values.push_back((red[i] + green[i] + blue[i]) / 3);
   return map;
 }
 

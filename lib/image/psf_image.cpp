@@ -70,15 +70,14 @@ ExrPart spectral_image(const Psf& psf, std::span<const std::array<double, 3>> we
                .height = psf.pixels,
                .texts = {{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "mm^-2"}}};
   for (std::size_t k = 0; k < 3; ++k) {
-    ExrChannel channel{std::string(1, "RGB"[k]), {}};
-    for (std::size_t i = k; i < rgb.pixels.size(); i += 3) channel.values.push_back(rgb.pixels[i]);
-    part.channels.push_back(std::move(channel));
+    std::vector<float>& values = part.channels[std::string(1, "RGB"[k])];
+    for (std::size_t i = k; i < rgb.pixels.size(); i += 3) values.push_back(rgb.pixels[i]);
   }
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     std::string nm = to_text(psf.wavelengths_nm[w]);
     std::replace(nm.begin(), nm.end(), '.', ',');
     const auto light = irradiance(psf, w);
-    part.channels.push_back({"S0." + nm + "nm", {light.begin(), light.end()}});
+    part.channels["S0." + nm + "nm"].assign(light.begin(), light.end());
   }
   return part;
 }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "image/exr.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 
@@ -20,8 +19,6 @@ namespace {
 
 constexpr std::array<const char*, 3> channel_names{"Y", "hits.x", "hits.y"};
 constexpr std::array diffractions{Diffraction::negligible, Diffraction::visible, Diffraction::dominant};
-
-using image_detail::channel;
 
 /// The checksum of all numbers and channels and of the texts `anchor` and `diffraction`.
 std::string checksum_of(const ExrPart& part) {
@@ -34,9 +31,9 @@ std::string checksum_of(const ExrPart& part) {
     if (const auto text = part.texts.find(name); text != part.texts.end()) bytes += text->second;
   }
   for (const char* name : channel_names) {
-    const std::vector<float>* values = channel(part, name);
-    if (!values) continue;
-    for (const float value : *values) add(std::bit_cast<std::uint32_t>(value), 4);
+    const auto own = part.channels.find(name);
+    if (own == part.channels.end()) continue;
+    for (const float value : own->second) add(std::bit_cast<std::uint32_t>(value), 4);
   }
   return checksum(bytes);
 }
@@ -72,7 +69,7 @@ ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point) {
   return part;
 }
 
-PsfPart from_exr_part(const ExrPart& part) {
+std::pair<PsfSetPoint, PsfKernel> from_exr_part(const ExrPart& part) {
   const std::string where = "part \"" + part.name + "\": ";
   const auto number = [&](const char* key) {
     const auto found = part.numbers.find(key);
@@ -84,9 +81,8 @@ PsfPart from_exr_part(const ExrPart& part) {
     if (found == part.texts.end()) throw Error(where + "no text " + key + "; must be a part of a PSF set");
     return found->second;
   };
-  PsfPart result;
-  PsfKernel& kernel = result.kernel;
-  result.point = {number("field_deg"), number("distance_mm"), number("wavelength_nm"), number("f_number")};
+  PsfKernel kernel;
+  const PsfSetPoint point{number("field_deg"), number("distance_mm"), number("wavelength_nm"), number("f_number")};
   kernel.pixels = part.width;
   kernel.pixel_mm = number("pixel_mm");
   kernel.anchor_mm = {number("anchor_x_mm"), number("anchor_y_mm")};
@@ -100,40 +96,42 @@ PsfPart from_exr_part(const ExrPart& part) {
   }
   std::array<std::vector<float>*, 3> values{&kernel.light, &kernel.hits_x, &kernel.hits_y};
   for (std::size_t c = 0; c < values.size(); ++c) {
-    const std::vector<float>* own = channel(part, channel_names[c]);
-    if (!own) throw Error(where + "no channel " + channel_names[c] + "; must be a part of a PSF set");
-    *values[c] = *own;
+    const auto own = part.channels.find(channel_names[c]);
+    if (own == part.channels.end()) {
+      throw Error(where + "no channel " + channel_names[c] + "; must be a part of a PSF set");
+    }
+    *values[c] = own->second;
   }
   if (part.width != part.height || text("checksum") != checksum_of(part)) {
     throw Error(where + "checksum = " + checksum_of(part) + "; must be " + text("checksum") + ": the file has changed");
   }
-  return result;
+  return {point, std::move(kernel)};
 }
 
 PsfSet read_psf_set(const std::filesystem::path& file) { return psf_set_of(read_exr_parts(file), file); }
 
 PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file) {
   try {
-    std::vector<PsfPart> found;
+    std::vector<std::pair<PsfSetPoint, PsfKernel>> found;
     std::array<std::set<double>, 4> seen;
     for (ExrPart& part : parts) {
       found.push_back(from_exr_part(part));
       part = {};
-      const PsfSetPoint& point = found.back().point;
+      const PsfSetPoint& point = found.back().first;
       const std::array at{point.field_deg, point.distance_mm, point.wavelength_nm, point.f_number};
       for (std::size_t axis = 0; axis < at.size(); ++axis) seen[axis].insert(at[axis]);
     }
     const auto axis = [&](std::size_t i) { return std::vector<double>(seen[i].begin(), seen[i].end()); };
     PsfSet::Axes axes{axis(0), axis(1), axis(2), axis(3)};
     std::map<std::string, std::size_t> indices;
-    for (std::size_t i = 0; i < found.size(); ++i) indices[psf_part_name(found[i].point)] = i;
+    for (std::size_t i = 0; i < found.size(); ++i) indices[psf_part_name(found[i].first)] = i;
     std::vector<PsfKernel> kernels;
     for (std::size_t node = 0; node < axes.size(); ++node) {
       const std::string part_name = psf_part_name(axes.point(node));
       const auto entry = indices.find(part_name);
       if (entry == indices.end())
         throw Error("no part \"" + part_name + "\"; must have one for every node of the grid");
-      kernels.push_back(std::move(found[entry->second].kernel));
+      kernels.push_back(std::move(found[entry->second].second));
     }
     return {std::move(axes), std::move(kernels)};
   } catch (const Error& error) {

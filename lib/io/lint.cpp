@@ -304,16 +304,15 @@ std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue
   return std::move(findings.list);
 }
 
-RepairedPrescription repair(const Prescription& prescription, const GlassCatalogue* glasses) {
-  RepairedPrescription result{prescription, {}};
-  Prescription& p = result.prescription;
+std::vector<ImportWarning> repair(Prescription& p, const GlassCatalogue* glasses) {
+  std::vector<ImportWarning> result;
   const auto find = [&](Kind kind) -> std::optional<Finding> {
     const std::vector<Finding> findings = lint_rows(p, glasses).list;
     const auto found = std::ranges::find(findings, kind, &Finding::kind);
     return found == findings.end() ? std::nullopt : std::optional(*found);
   };
   const auto say = [&](const Finding& finding, const std::string& cure) {
-    result.changes.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
+    result.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
   };
   // Makes a change unless the lens would be invalid. Returns true if the change was made.
   const auto changed = [&](const std::function<void(Prescription&)>& change) {

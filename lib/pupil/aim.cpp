@@ -243,6 +243,7 @@ std::string_view name(AimStatus status) noexcept {
   switch (status) {
     case AimStatus::converged: return "converged";
     case AimStatus::vignetted: return "vignetted";
+    case AimStatus::outside_film: return "outside_film";
     case AimStatus::no_ray: return "no_ray";
   }
   return "unknown";

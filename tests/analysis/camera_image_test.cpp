@@ -39,10 +39,10 @@ TEST_P(CameraImages, EqualTheLens) {
   const auto& [id, field_deg, z] = GetParam();
   const Lens lens = with_focus(data_lens(id), 3000, {.origin = DistanceOrigin::front_vertex});
   const FieldPoint point{radians(field_deg), z, 0.3};
-  const PointImage traced = point_image(lens, point, options);
-  const PointImage seen = point_image(Camera(lens, film, {.model = ModelKind::exact_double}), point, options);
-  ASSERT_GT(traced.throughput, 0);
-  EXPECT_NEAR(seen.throughput / traced.throughput, 1, 2e-3);
+  const Psf traced = point_image(lens, point, options);
+  const Psf seen = point_image(Camera(lens, film, {.model = ModelKind::exact_double}), point, options);
+  ASSERT_GT(traced.mean_throughput, 0);
+  EXPECT_NEAR(seen.mean_throughput / traced.mean_throughput, 1, 2e-3);
   EXPECT_NEAR(seen.size.rms_radius / traced.size.rms_radius, 1, 5e-3);
   EXPECT_NEAR(glm::length(seen.size.centroid - traced.size.centroid), 0, 5e-3 * traced.size.rms_radius);
   EXPECT_LT(seen.error, 0.1);
@@ -63,10 +63,10 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
     const auto image = [&](const BokehControls& bokeh) {
       return point_image(Camera(lens, film, {.model = model, .bokeh = bokeh}), point, options);
     };
-    const PointImage plain = image({}), ring = image({.weight_distribution = 12.7, .weight_strength = 0.6}),
-                     soft = image({.weight_distribution = -4, .weight_strength = 0.8});
-    EXPECT_NEAR(ring.throughput / plain.throughput, 1, 0.03) << name(model);
-    EXPECT_NEAR(soft.throughput / plain.throughput, 1, 0.02) << name(model);
+    const Psf plain = image({}), ring = image({.weight_distribution = 12.7, .weight_strength = 0.6}),
+              soft = image({.weight_distribution = -4, .weight_strength = 0.8});
+    EXPECT_NEAR(ring.mean_throughput / plain.mean_throughput, 1, 0.03) << name(model);
+    EXPECT_NEAR(soft.mean_throughput / plain.mean_throughput, 1, 0.02) << name(model);
     // Mean square of a disc with w(x), x = r^2: the integral of x w(x).
     const auto mean_square = [](double d, double p) {
       return d > 0 ? (1 - p) / 2 + p * (d + 1) / (d + 2) : 1 - ((1 - p) / 2 + p * (1 - d) / (2 - d));
@@ -77,9 +77,8 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
     EXPECT_NEAR(soft.size.rms_radius * soft.size.rms_radius / plain_square / (2 * mean_square(-4, 0.8)), 1, 0.02)
         << name(model);
     // The image contains the total light exactly.
-    EXPECT_EQ(std::accumulate(ring.psf.counts.begin(), ring.psf.counts.end(), std::uint64_t{0}),
-              ring.psf.transmitted[0]);
-    EXPECT_NEAR(ring.psf.throughput(0), ring.throughput, 1e-12);
+    EXPECT_EQ(std::accumulate(ring.counts.begin(), ring.counts.end(), std::uint64_t{0}), ring.transmitted[0]);
+    EXPECT_NEAR(ring.throughput(0), ring.mean_throughput, 1e-12);
   }
 }
 
@@ -88,7 +87,7 @@ TEST(CameraImages, KeepTheBoundOfTheirError) {
   for (const BokehControls& bokeh : {BokehControls{.weight_distribution = 12.7, .weight_strength = 0.6},
                                      BokehControls{.weight_distribution = -4, .weight_strength = 0.8}}) {
     const Camera camera(lens, film, {.model = ModelKind::thick, .bokeh = bokeh});
-    const auto light = [](const PointImage& image) {
+    const auto light = [](const Psf& image) {
       std::array<double, 64> result;
       for (int k = 0; k < 64; ++k) {
         result[static_cast<std::size_t>(k)] = image.radial_profile[static_cast<std::size_t>(k)] *
@@ -102,7 +101,7 @@ TEST(CameraImages, KeepTheBoundOfTheirError) {
     int broken = 0;
     run.samples = 1 << 12;
     for (run.seed = 1; run.seed <= 20; ++run.seed) {
-      const PointImage image = point_image(camera, {0.05, -1000}, run);
+      const Psf image = point_image(camera, {0.05, -1000}, run);
       const auto own = light(image);
       double errors = 0, squares = 0;
       for (std::size_t k = 0; k < 64; ++k) {
@@ -120,7 +119,7 @@ TEST(CameraImages, CountWeightsOfAnySize) {
   const auto light = [&](float value) {
     BokehControls bokeh;
     bokeh.weight_map = {1, 1, {value}};
-    return point_image(Camera(lens, film, {.bokeh = bokeh}), {0, -1000}, options).throughput;
+    return point_image(Camera(lens, film, {.bokeh = bokeh}), {0, -1000}, options).mean_throughput;
   };
   for (const float value : {1e-6f, 1e-3f, 1e6f}) EXPECT_NEAR(light(value) / value / light(1), 1, 1e-3) << value;
 }

@@ -110,8 +110,7 @@ TEST(ChromaticAberration, AgreesWithSpotsAndFirstOrder) {
     EXPECT_NEAR(*colour.paraxial_focus_shift[w], paraxial_image_z(lens, -1000, w) - paraxial_image_z(lens, -1000, 1),
                 1e-12);
     for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_NEAR(*colour.lateral[i][w], *spots[3 * i + w].chief_ray_height - *spots[3 * i + 1].chief_ray_height,
-                  1e-12);
+      EXPECT_NEAR(*colour.lateral[i][w], *spots[i][w].chief_ray_height - *spots[i][1].chief_ray_height, 1e-12);
     }
   }
 }

@@ -83,7 +83,7 @@ TEST(DiffractionPsf, ByFftEqualsHuygensSum) {
     const FieldPoint point{.field_rad = radians(field_deg), .z = far};
     const Lens lens = cooke(8);
     const DiffractionPsf fft = diffraction_psf(lens, point, {.pixels = 48});
-    const DiffractionPsf sum = diffraction_psf(lens, point, {.pixels = 48, .sum = DiffractionSum::huygens});
+    const DiffractionPsf sum = diffraction_psf(lens, point, {.pixels = 48, .huygens = true});
     EXPECT_LT(difference(fft.irradiance, sum.irradiance), 1e-3) << field_deg;
     EXPECT_NEAR(fft.strehl[0], sum.strehl[0], 1e-3) << field_deg;
   }
@@ -95,8 +95,8 @@ TEST(DiffractionPsf, ConservesTheLight) {
     const DiffractionPsf psf = diffraction_psf(cooke(16), point);
     EXPECT_LT(light_of(psf), psf.throughput[0]) << field_deg;
     EXPECT_GT(light_of(psf), 0.97 * psf.throughput[0]) << field_deg;  // 15 Airy radii hold 98 to 99 %
-    const PointImage rays = point_image(cooke(16), point, {.samples = 1u << 16, .pixels = 16});
-    EXPECT_NEAR(psf.throughput[0], rays.throughput, 2e-3 * rays.throughput);
+    const Psf rays = point_image(cooke(16), point, {.samples = 1u << 16, .pixels = 16});
+    EXPECT_NEAR(psf.throughput[0], rays.mean_throughput, 2e-3 * rays.mean_throughput);
   }
 }
 
@@ -120,7 +120,7 @@ TEST(DiffractionPsf, OfADefocusedPointHasTheSizeOfTheGeometricBlur) {
   const Lens defocused = with_film(lens, lens.film_z() - 2);
   const FieldPoint point{.z = far};
   const DiffractionPsf psf = diffraction_psf(defocused, point, {.pixels = 256, .half_width_mm = 0.2});
-  const PointImage rays = point_image(defocused, point, {.samples = 1u << 16, .pixels = 16});
+  const Psf rays = point_image(defocused, point, {.samples = 1u << 16, .pixels = 16});
   double inside = 0;
   for (int row = 0; row < 256; ++row) {
     for (int column = 0; column < 256; ++column) {
@@ -128,7 +128,7 @@ TEST(DiffractionPsf, OfADefocusedPointHasTheSizeOfTheGeometricBlur) {
       if (r < 1.2 * rays.size.max_radius) inside += pixel(psf, row, column) * psf.pixel_mm * psf.pixel_mm;
     }
   }
-  EXPECT_NEAR(inside, rays.throughput, 0.04);  // the edge of the shadow is 25 um wide
+  EXPECT_NEAR(inside, rays.mean_throughput, 0.04);  // the edge of the shadow is 25 um wide
 }
 
 TEST(DiffractionPsf, OfASquareIrisIsTheSquareOfTwoSincs) {

@@ -17,7 +17,7 @@ namespace psf_error_test {
 
 using testing::expect_error;
 
-std::array<double, 64> light(const PointImage& image) {
+std::array<double, 64> light(const Psf& image) {
   std::array<double, 64> result{};
   const double width = image.size.max_radius / 64;
   for (std::size_t k = 0; k < 64; ++k) {
@@ -49,7 +49,7 @@ TEST(PsfError, HoldsInOtherRuns) {
           const auto image =
               point_image(lens, point, {.samples = 1u << 20, .tolerance = tolerance, .pixels = 8, .seed = seed});
           EXPECT_LE(image.error, tolerance);
-          EXPECT_LT(image.psf.sent[0], 1u << 20);
+          EXPECT_LT(image.sent[0], 1u << 20);
           ++runs;
           kept += relative_error(light(image), truth) <= image.error;
         }
@@ -63,7 +63,7 @@ TEST(PsfError, HoldsInOtherRuns) {
 TEST(PsfError, StopsAtTheMaximumOfSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto sent = [&](std::uint32_t samples, double tolerance) {
-    return point_image(lens, {0, -1000}, {.samples = samples, .tolerance = tolerance, .pixels = 8}).psf.sent[0];
+    return point_image(lens, {0, -1000}, {.samples = samples, .tolerance = tolerance, .pixels = 8}).sent[0];
   };
   EXPECT_EQ(sent(1000, 1e-9), 1000u);
   EXPECT_EQ(sent(1u << 17, 1e-9), 1u << 17);
@@ -80,8 +80,8 @@ TEST(PsfError, DoesNotChangeTheImage) {
   const auto image = [&](double tolerance) {
     return point_image(lens, {0.1, -1000}, {.samples = 1u << 16, .tolerance = tolerance, .pixels = 64});
   };
-  const PointImage at_once = image(0), in_steps = image(1e-9);
-  EXPECT_EQ(at_once.psf.transmitted, in_steps.psf.transmitted);
+  const Psf at_once = image(0), in_steps = image(1e-9);
+  EXPECT_EQ(at_once.transmitted, in_steps.transmitted);
   EXPECT_NEAR(at_once.size.rms_radius, in_steps.size.rms_radius, 1e-12);
   EXPECT_NEAR(at_once.error, in_steps.error, 1e-9);
 }

@@ -169,7 +169,7 @@ TEST(PsfSampling, ErrorsFallFasterThanWithRandomRays) {
   }
 }
 
-// PointImage::error is estimated from parts of one sequence. Eight replicates with an eighth of the rays each give an
+// Psf::error is estimated from parts of one sequence. Eight replicates with an eighth of the rays each give an
 // unbiased estimate, but larger errors. Measured at 4096 to 65536 rays: 1.4 to 3.5 times as large on the axis, 1.15 to
 // 1.9 times off the axis and with blades.
 TEST(PsfSampling, OneSequenceIsBetterThanEightReplicates) {

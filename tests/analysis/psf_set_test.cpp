@@ -32,7 +32,7 @@ using testing::expect_tokens;
 using testing::message;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr PsfKernelOptions small{.samples = 1 << 15, .pixels = 33};
+constexpr PsfOptions small{.samples = 1 << 15, .pixels = 33};
 
 double sum(const PsfKernel& kernel) { return std::accumulate(kernel.light.begin(), kernel.light.end(), 0.0); }
 
@@ -56,8 +56,8 @@ TEST(PsfKernel, LightAndThroughputHaveTheirDefinitions) {
     for (const double field : {0.0, 10.0, 14.0}) {
       const FieldPoint point{radians(field), -1200};
       const PsfKernel kernel = psf_kernel(lens, open, point, 0, small);
-      const PointImage image = point_image(lens, point, {.samples = small.samples, .pixels = 33});
-      EXPECT_EQ(kernel.throughput, image.throughput);
+      const Psf image = point_image(lens, point, {.samples = small.samples, .pixels = 33});
+      EXPECT_EQ(kernel.throughput, image.mean_throughput);
       EXPECT_EQ(kernel.error, image.error);
       EXPECT_NEAR(sum(kernel), kernel.total, 1e-5 * kernel.total);
       // Photographic lenses obey the sine condition, so that the solid angle on the axis is proportional to 1 / N^2.
@@ -72,7 +72,7 @@ TEST(PsfKernel, IsAnchoredAtTheChiefRayAndStandsUpright) {
   for (const double z : {-1200.0, -infinity}) {
     const FieldPoint point{radians(12), z};
     const PsfKernel kernel = psf_kernel(lens, open, point, 0, small);
-    const auto spots = spot_diagram(lens, z, std::array{point.field_rad}, small.samples);
+    const auto spots = spot_diagram(lens, z, std::array{point.field_rad}, small.samples).values;
     ASSERT_TRUE(kernel.chief_ray);
     EXPECT_EQ(kernel.anchor_mm.y, spots[0].chief_ray_height);
     EXPECT_LT(kernel.anchor_mm.y, -20) << "upside down on the film";
@@ -126,7 +126,7 @@ TEST(PsfKernel, DarkPointIsDark) {
 TEST(PsfKernel, RefusesEvenPixels) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
   for (const int pixels : {0, 1, 32, -3}) {
-    const PsfKernelOptions options{.pixels = pixels};
+    const PsfOptions options{.pixels = pixels};
     expect_error([&] { psf_kernel(lens, lens, {0, -1000}, 0, options); }, {"pixels", pixels});
   }
   expect_error([&] { psf_kernel(lens, lens, {0, -1000}, 7, small); }, {"wavelength", 7});
@@ -136,10 +136,10 @@ TEST(PsfKernel, RefusesEvenPixels) {
 struct Study {
   Lens open;
   double focus_mm;
-  PsfKernelOptions options{.samples = 1 << 17, .pixels = 65, .threads = 2};
+  PsfOptions options{.samples = 1 << 17, .pixels = 65, .threads = 2};
 
   PsfKernel kernel(const PsfSetPoint& point, double half_width = 0, std::uint32_t seed = 0) const {
-    PsfKernelOptions own = options;
+    PsfOptions own = options;
     own.half_width_mm = half_width;
     own.seed = seed;
     const Lens lens = with_focus(with_f_number(open, point.f_number), focus_mm);

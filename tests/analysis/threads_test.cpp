@@ -62,13 +62,13 @@ std::vector<double> all_about(const Shared& shared) {
   say(changed.film_z(), real_f_number(changed), pupils(changed).exit.diameter, lint(shared.prescription).size());
   traced(changed);
   const std::array fields{0.0, radians(8.0)};
-  for (const Spot& spot : spot_diagram(changed, -1500, fields, 512)) {
+  for (const Spot& spot : spot_diagram(changed, -1500, fields, 512).values) {
     say(spot.size.rms_radius, spot.size.max_radius, spot.chief_ray_height.value_or(0), spot.x.size());
   }
-  const PointImage image =
+  const Psf image =
       point_image(changed, {.field_rad = fields[1], .z = -1200}, {.samples = 4096, .pixels = 32, .threads = 2});
-  for (const auto count : image.psf.counts) say(count);
-  say(image.throughput, image.size.rms_radius);
+  for (const auto count : image.counts) say(count);
+  say(image.mean_throughput, image.size.rms_radius);
 
   try {
     changed = with_f_number(changed, 0.1);
@@ -85,8 +85,8 @@ struct Threaded {
 };
 void PrintTo(const Threaded& test, std::ostream* out) { *out << test.name; }
 
-std::vector<double> numbers(const PointImage& image) {
-  std::vector<double> all(image.psf.counts.begin(), image.psf.counts.end());
+std::vector<double> numbers(const Psf& image) {
+  std::vector<double> all(image.counts.begin(), image.counts.end());
   all.insert(all.end(), image.radial_profile.begin(), image.radial_profile.end());
   all.push_back(image.size.rms_radius);
   return all;

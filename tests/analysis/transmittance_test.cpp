@@ -186,10 +186,8 @@ TEST(Transmittance, OfFieldsIsThatOfEachPoint) {
   constexpr std::array fields{0.0, 0.2};
   for (const int threads : {1, 2}) {
     const auto points = transmittance(lens, far, fields, threads);
-    ASSERT_EQ(points.size(), 6u);
-    EXPECT_EQ(points[5].field_rad, 0.2);
-    EXPECT_EQ(points[5].wavelength, 2u);
-    EXPECT_EQ(points[5].value.value(), transmittance(lens, {.field_rad = 0.2, .z = far}, 2).value());
+    ASSERT_EQ(points.values.size(), 6u);
+    EXPECT_EQ(points[1][2].value(), transmittance(lens, {.field_rad = 0.2, .z = far}, 2).value());
   }
 }
 

@@ -38,8 +38,9 @@ Lens compiled(std::vector<SurfaceRow> surfaces) {
   return compile(p);
 }
 
-Wavefront at(const Lens& lens, double field_deg, const WavefrontOptions& options = {}, double z = far) {
-  const auto result = wavefront(lens, {.field_rad = radians(field_deg), .z = z}, options);
+Wavefront at(const Lens& lens, double field_deg, PupilCoordinates coordinates = PupilCoordinates::stop,
+             std::size_t directions = 48) {
+  const auto result = wavefront(lens, {.field_rad = radians(field_deg), .z = far}, {}, coordinates, directions);
   EXPECT_TRUE(result);
   return result.value_or(Wavefront{});
 }
@@ -181,7 +182,7 @@ TEST(Wavefront, EqualsPathsInLongDouble) {
   const LongPath path(lens);
   for (const double field_deg : {0.0, 6.0, 12.0}) {
     const double field = radians(field_deg);
-    const Wavefront front = at(lens, field_deg, {.coordinates = PupilCoordinates::entrance});
+    const Wavefront front = at(lens, field_deg, PupilCoordinates::entrance);
     // Light travels towards -y: the point lies at +y.
     const LongPath::V direction{0, -std::sin(field), std::cos(field)}, middle{0, 0, entrance.z};
     const LongPath::V image{front.image.x, front.image.y, lens.film_z()};
@@ -218,7 +219,7 @@ TEST(Wavefront, IsTheSumOfItsPolynomialsAndAResidual) {
 TEST(Wavefront, DiffersFromTenTimesTheRaysByTheStatedError) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f1.35"), std::numeric_limits<double>::infinity());
   for (const double field_deg : {0.0, 7.0, 14.0}) {
-    const Wavefront few = at(lens, field_deg), many = at(lens, field_deg, {.directions = 480});
+    const Wavefront few = at(lens, field_deg), many = at(lens, field_deg, PupilCoordinates::stop, 480);
     EXPECT_LE(std::abs(few.rms_waves - many.rms_waves), few.sampling_error_waves + 1e-9) << field_deg;
     EXPECT_LE(few.sampling_error_waves, 0.05 * few.rms_waves + 1e-9) << field_deg;
   }
@@ -294,8 +295,8 @@ TEST(RayFans, HaveTheWavefrontErrorsOfTheirRays) {
   const std::array fields{radians(field_deg)};
   int seen = 0;
   double largest = 0;
-  const std::vector<RayFan> fans = ray_fans(lens, far, fields, 21);
-  for (const RayFan::Point& point : fans[0].points) {
+  const Grid<RayFan> fans = ray_fans(lens, far, fields, 21);
+  for (const RayFan::Point& point : fans[0][0].points) {
     if (!point.tangential_waves || !point.sagittal_waves) continue;
     ++seen;
     EXPECT_NEAR(*point.tangential_waves, polynomials(front, {0, point.pupil}), 0.01);
@@ -309,8 +310,8 @@ TEST(RayFans, HaveTheWavefrontErrorsOfTheirRays) {
 TEST(Wavefront, NeedsAChiefRayAndAPupil) {
   const Lens lens = testing::data_lens("cooke_triplet_50mm_f5");
   EXPECT_FALSE(wavefront(lens, {.field_rad = radians(80.0), .z = far}));
-  testing::expect_error([&] { at(lens, 0, {.directions = 13}); }, {"directions", 13, 12});
-  testing::expect_error([&] { at(lens, 0, {.wavelength = 5}); }, {"wavelength"});
+  testing::expect_error([&] { at(lens, 0, PupilCoordinates::stop, 13); }, {"directions", 13, 12});
+  testing::expect_error([&] { wavefront(lens, {}, 5); }, {"wavelength"});
 }
 
 }  // namespace wavefront_test

@@ -105,12 +105,12 @@ struct Picture {
 
 Picture picture(const Lens& lens) {
   const auto image = point_image(lens, {off_axis, -3000}, {.samples = 512, .pixels = 8, .half_width_mm = 0.5});
-  Picture result{.counts = {}, .entrance_area = image.psf.entrance_pupil_area};
+  Picture result{.counts = {}, .entrance_area = image.entrance_pupil_area};
   for (std::size_t line = 0; line < 3; ++line) {
     const std::size_t w = lens.wavelength_index(Wavelength::nm(lines_nm[line]));
-    result.area[line] = image.psf.sampled_area[w];
-    result.transmitted[line] = image.psf.transmitted[w];
-    const auto begin = image.psf.counts.begin() + static_cast<std::ptrdiff_t>(64 * w);
+    result.area[line] = image.sampled_area[w];
+    result.transmitted[line] = image.transmitted[w];
+    const auto begin = image.counts.begin() + static_cast<std::ptrdiff_t>(64 * w);
     result.counts[line].assign(begin, begin + 64);
   }
   return result;

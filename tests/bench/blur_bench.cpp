@@ -59,7 +59,7 @@ RgbImage colours_of(const petzval::BlurredImage& picture) {
 }
 
 double miss_rate(const petzval::BlurredImage& picture) {
-  return static_cast<double>(picture.statistics.missed) / static_cast<double>(picture.statistics.rays);
+  return static_cast<double>(picture.missed_count) / static_cast<double>(picture.ray_count);
 }
 
 lens_blur::LensFlags thin_lens(double diameter_mm) {
@@ -139,7 +139,7 @@ void report_thin(const Settings& settings, const LoadedScene& scene, double diam
   }
   const RgbImage ours = colours_of(picture);
   const lens_blur::Likeness four = lens_blur::likeness(ours, reference), of_post = lens_blur::likeness(post, reference);
-  const double missed = miss_rate(picture), rays = static_cast<double>(picture.statistics.rays);
+  const double missed = miss_rate(picture), rays = static_cast<double>(picture.ray_count);
   view.peel(1, layers);
   view.gather(layers, picture);
   const double one = lens_blur::likeness(colours_of(picture), reference).psnr_db;

@@ -57,7 +57,7 @@ void picture(benchmark::State& state, const Light& light) {
   petzval::PsfOptions options{.samples = samples};
   for (auto _ : state) {
     ++options.seed;
-    benchmark::DoNotOptimize(petzval::point_image(light.lens, light.point, options).throughput);
+    benchmark::DoNotOptimize(petzval::point_image(light.lens, light.point, options).mean_throughput);
   }
   state.SetItemsProcessed(state.iterations() * samples);
 }

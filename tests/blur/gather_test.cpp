@@ -231,7 +231,7 @@ TEST(Gather, KeepsAUniformColourWithMissingSurfaces) {
     const LayerSet layers = layers_of(grey_boards, rays, 1);
     for (const bool by_blocks : {true, false}) {
       const BlurredImage picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {by_blocks});
-      EXPECT_GT(picture.statistics.missed, 0u) << by_blocks;
+      EXPECT_GT(picture.missed_count, 0u) << by_blocks;
       for (std::size_t i = 0; i < picture.missed.size(); ++i) {
         ASSERT_NEAR(picture.rgba[4 * i], 0.5, 1e-4) << by_blocks << ' ' << i << ' ' << picture.missed[i];
       }
@@ -294,7 +294,7 @@ TEST(Gather, IndependentOfBounds) {
       const BlurredImage bounded = blur_detail::gather(layers, rays, {}, {by_blocks}),
                          free = blur_detail::gather(layers, rays, {}, {by_blocks, false});
       EXPECT_EQ(bounded.rgba, free.rgba) << by_blocks;
-      EXPECT_LT(bounded.statistics.steps, free.statistics.steps) << by_blocks;
+      EXPECT_LT(bounded.step_count, free.step_count) << by_blocks;
     }
   }
 }
@@ -355,7 +355,7 @@ TEST(Gather, ReportsMissingSurfaces) {
   const LensRays rays = thin_rays(25);
   const LayerSet one = layers_of(boards, rays, 1), all = layers_of(boards, rays, 8);
   const BlurredImage of_one = gather(one, rays), of_all = gather(all, rays);
-  EXPECT_GT(of_one.statistics.missed, 50 * (of_all.statistics.missed + 1));
+  EXPECT_GT(of_one.missed_count, 50 * (of_all.missed_count + 1));
   EXPECT_GT(*std::max_element(of_one.missed.begin(), of_one.missed.end()), 0.2f);
   EXPECT_LT(difference(of_one, of_all).mean, 0.01);
 }
@@ -410,9 +410,9 @@ TEST(Highlights, AreUniformDiscs) {
                                                                  vogel_points(32), {.nearest_mm = 1000})}) {
     const LayerSet layers = layers_of(lamp, rays);
     const BlurredImage picture = gather(layers, rays);
-    EXPECT_GT(picture.statistics.highlights, 0u);
+    EXPECT_GT(picture.highlight_count, 0u);
     const double radius = 30 * (1 / 1000.0 - 1 / 2000.0) * rays.camera().focal_px;
-    const double area = std::numbers::pi * radius * radius, level = picture.statistics.highlights * 1000 / area;
+    const double area = std::numbers::pi * radius * radius, level = picture.highlight_count * 1000 / area;
     double light = 0, least = 1e9, most = 0, outside = 0;
     for (int row = 0; row < 100; ++row) {
       for (int column = 0; column < 150; ++column) {
@@ -442,7 +442,7 @@ TEST(Highlights, AreLightsWithMoreBlurPixelsThanRays) {
   for (const double radius_px : {-5.0, -4.0, -2.5, 0.0, 2.5, 4.0, 5.0}) {  // positive: nearer than the focus
     lamp_at = static_cast<float>(1 / 2000.0 + radius_px / (30 * rays.camera().focal_px));
     const bool spread = std::numbers::pi * radius_px * radius_px > 32;
-    EXPECT_EQ(gather(layers_of(lamp, rays), rays).statistics.highlights > 0, spread) << radius_px;
+    EXPECT_EQ(gather(layers_of(lamp, rays), rays).highlight_count > 0, spread) << radius_px;
   }
 }
 
@@ -459,7 +459,7 @@ TEST(Highlights, AreLightsInFrontOfAWhiteWall) {
   std::uint64_t lights[2];
   for (const bool white : {false, true}) {
     wall = white ? 2.0f : 0.1f;
-    lights[white] = gather(layers_of(lamp, rays), rays).statistics.highlights;
+    lights[white] = gather(layers_of(lamp, rays), rays).highlight_count;
   }
   EXPECT_GT(lights[0], 0u);
   EXPECT_EQ(lights[1], lights[0]);
@@ -485,7 +485,7 @@ TEST(Highlights, AreSmoothIfRaysSpreadUnevenly) {
     return seen;
   };
   const BlurredImage picture = gather(layers_of(lamp, rays), rays);
-  ASSERT_GT(picture.statistics.highlights, 0u);
+  ASSERT_GT(picture.highlight_count, 0u);
   double worst = 0;  // where rays are sparse
   for (int row = 0; row < 100; ++row) {
     for (int column = 0; column < 150; ++column) {
@@ -494,7 +494,7 @@ TEST(Highlights, AreSmoothIfRaysSpreadUnevenly) {
       const double x = (std::sqrt(std::max(0.0, 1 + 4 * stretch * at)) - 1) / (2 * stretch);
       if (x < 0.2 || std::hypot(x, y) > 0.9) continue;
       const double level =
-          picture.statistics.highlights * 1000 / (std::numbers::pi * radius * radius) / (1 + 2 * stretch * x);
+          picture.highlight_count * 1000 / (std::numbers::pi * radius * radius) / (1 + 2 * stretch * x);
       worst = std::max(worst, std::abs(picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column))] / level - 1));
     }
   }

@@ -55,8 +55,7 @@ TEST_P(Planes, EqualConvolutionsWithThePointImage) {
 
   constexpr int size = 41;
   const Psf psf = point_image(lens, {.z = -from_vertex},
-                              {.pixels = size, .half_width_mm = size * pixel / 2, .centre = Vec2<double>{0, 0}})
-                      .psf;
+                              {.pixels = size, .half_width_mm = size * pixel / 2, .centre = Vec2<double>{0, 0}});
   double sum = 0;
   for (const auto count : psf.counts) sum += static_cast<double>(count);
   double worst = 0, spread = 0;
@@ -199,7 +198,7 @@ TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionAsHighlights) {
     const double w = focus + wanted / (25 * camera.focal_px);
     const PeelPlan plan = plan_peel(rays, 0.5 / w, 1e7);
     const BlurredImage picture = gather(grey_pixel(plan, w, 0.5 * w), rays, {.highlights_above = 0.1});
-    ASSERT_EQ(picture.statistics.highlights, 1u);
+    ASSERT_EQ(picture.highlight_count, 1u);
     const Disc disc = disc_of(picture);
     EXPECT_NEAR(std::sqrt(disc.radius * disc.radius - rounding), wanted, 0.02);
     EXPECT_NEAR(disc.light, 0.5, 0.005);

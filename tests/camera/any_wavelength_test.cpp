@@ -279,9 +279,9 @@ TEST(AnyWavelengthOf, OtherWavelengthsAreOutsideTheSpectrum) {
       EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.5, 0.5, bad).importance.fate, RayFate::outside_spectrum);
       EXPECT_EQ(camera.sample_distant_importance({0, 0, 1}, 0.5, 0.5, bad).importance.fate, RayFate::outside_spectrum);
       EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, 1}, bad), 0);
-      EXPECT_EQ(camera.project({0, 0, -1000}, bad).status, ProjectionStatus::not_visible);
+      EXPECT_EQ(camera.project({0, 0, -1000}, bad).status, AimStatus::no_ray);
     }
-    EXPECT_EQ(camera.project({0, 0, -3000}, Wavelength::nm(511)).status, ProjectionStatus::converged);
+    EXPECT_EQ(camera.project({0, 0, -3000}, Wavelength::nm(511)).status, AimStatus::converged);
   }
 }
 

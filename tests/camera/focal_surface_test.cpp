@@ -420,7 +420,6 @@ TEST(FocalPoints, LieWhereChiefRaysMeetTheFilm) {
   }
   EXPECT_FALSE(tilted.contains(found[1].film_point));  // outside the frame
   EXPECT_DOUBLE_EQ(*found[0].inverse_distance, 1 / (thick.pupils.entrance.z + 2000));
-  EXPECT_EQ(points_in_view(thick, tilted, points, {}), (std::vector{true, false, true}));
   EXPECT_EQ(focal_points(thick, tilted, points, {.film = tilted}).size(), 2u);
   expect_error([&] { focal_points(thick, tilted, points, {}, std::vector<double>{1}); }, {"fades", 1, 3});
 }
@@ -439,29 +438,6 @@ TEST(FocalPoints, CountByTheirFades) {
   const auto weighed = focal_points(lens, film, points, {.time = 0, .nearer_weighs_more = true});
   EXPECT_DOUBLE_EQ(weighed[0].weight, 900.0 / 2000);
   EXPECT_EQ(weighed[1].weight, 1);
-}
-
-TEST(FadeFilter, IndependentOfTheFrameRate) {
-  FadeFilter coarse(0.2), fine(0.2);
-  coarse.advance(0, {true, true, false});
-  fine.advance(0, {true, true, false});
-  EXPECT_EQ(coarse.fades(), (std::vector{1.0, 1.0, 0.0}));
-  const std::vector<bool> shown[] = {{true, false, true}, {true, true, false}};
-  for (const auto& in_view : shown) {
-    coarse.advance(0.5, in_view);
-    for (int i = 0; i < 100; ++i) fine.advance(0.005, in_view);
-  }
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(coarse.fades()[i], fine.fades()[i], 1e-13);
-  EXPECT_EQ(coarse.fades()[0], 1);
-  EXPECT_NEAR(coarse.fades()[2], (1 - std::exp(-2.5)) * std::exp(-2.5), 1e-15);
-  coarse.advance(0, {true, true, true, true});
-  EXPECT_EQ(coarse.fades()[3], 1);
-  FadeFilter at_once(0);
-  at_once.advance(0, {true});
-  at_once.advance(0, {false});
-  EXPECT_EQ(at_once.fades()[0], 0);
-  expect_error([] { FadeFilter(-1); }, {"FadeFilter", "time constant", -1});
-  expect_error([&] { at_once.advance(nan, {}); }, {"FadeFilter", "step", "nan"});
 }
 
 }  // namespace focal_surface_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/camera_ray.hpp"
+#include "petzval/camera/camera.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace petzval {
 namespace host_frame_test {
 
 constexpr std::array hosts{Host::pbrt, Host::mitsuba, Host::cycles, Host::arnold, Host::appleseed};
-constexpr std::array origins{FrameOrigin::film, FrameOrigin::front_vertex, FrameOrigin::entrance_pupil};
+constexpr std::array origins{DistanceOrigin::film, DistanceOrigin::front_vertex, DistanceOrigin::entrance_pupil};
 
 const Lens& gauss() {
   static const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
@@ -35,7 +35,7 @@ class HostFrames : public ::testing::TestWithParam<Says> {};
 
 TEST_P(HostFrames, AxesAndUnitsEqualTheHost) {
   const auto& [host, right, up, ahead, per_mm] = GetParam();
-  const HostFrame frame(host, gauss(), FrameOrigin::front_vertex);
+  const HostFrame frame(host, gauss(), DistanceOrigin::front_vertex);
   EXPECT_EQ(frame.units_per_mm(), per_mm);
   // In the lens frame a camera looks along -z; +y is up and +x is right.
   EXPECT_EQ(frame.direction_to_host({1, 0, 0}), right);
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Hosts, HostFrames,
 TEST(HostFrame, RoundTrips) {
   const Ray<double> ray{{12.5, -340, -2000}, {0.36, 0.48, 0.8}};
   for (const Host host : hosts) {
-    for (const FrameOrigin origin : origins) {
+    for (const DistanceOrigin origin : origins) {
       for (const double per_mm : {0.001, 0.1, 1.0, 0.5}) {
         const HostFrame frame(host, gauss(), origin, per_mm);
         EXPECT_EQ(frame.units_per_mm(), per_mm);
@@ -82,19 +82,19 @@ TEST(HostFrame, RoundTrips) {
 TEST(HostFrame, OriginIsTheRequestedPoint) {
   const double pupil_z = pupils(gauss()).entrance.z;
   for (const Host host : hosts) {
-    const auto at = [&](FrameOrigin origin, double z) {
+    const auto at = [&](DistanceOrigin origin, double z) {
       return HostFrame(host, gauss(), origin).point_to_host({0, 0, z});
     };
-    EXPECT_EQ(at(FrameOrigin::film, gauss().film_z()), Vec3<double>(0));
-    EXPECT_EQ(at(FrameOrigin::front_vertex, 0), Vec3<double>(0));
-    EXPECT_EQ(at(FrameOrigin::entrance_pupil, pupil_z), Vec3<double>(0));
+    EXPECT_EQ(at(DistanceOrigin::film, gauss().film_z()), Vec3<double>(0));
+    EXPECT_EQ(at(DistanceOrigin::front_vertex, 0), Vec3<double>(0));
+    EXPECT_EQ(at(DistanceOrigin::entrance_pupil, pupil_z), Vec3<double>(0));
   }
 }
 
 TEST(HostFrame, RefusesInvalidFrames) {
   using testing::expect_error;
   for (const double unit : {0.0, -0.001, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    expect_error([&] { HostFrame(Host::pbrt, gauss(), FrameOrigin::film, unit); }, {"units_per_mm", unit});
+    expect_error([&] { HostFrame(Host::pbrt, gauss(), DistanceOrigin::film, unit); }, {"units_per_mm", unit});
   }
   Prescription p;
   p.name = "telecentric";
@@ -103,9 +103,9 @@ TEST(HostFrame, RefusesInvalidFrames) {
   p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
   p.surfaces.push_back({.semi_diameter = 3, .stop = true});
   const Lens telecentric = compile(p);
-  expect_error([&] { HostFrame(Host::pbrt, telecentric, FrameOrigin::entrance_pupil); },
+  expect_error([&] { HostFrame(Host::pbrt, telecentric, DistanceOrigin::entrance_pupil); },
                {"telecentric", "entrance_pupil"});
-  EXPECT_NO_THROW(HostFrame(Host::pbrt, telecentric, FrameOrigin::film));
+  EXPECT_NO_THROW(HostFrame(Host::pbrt, telecentric, DistanceOrigin::film));
 }
 
 }  // namespace host_frame_test

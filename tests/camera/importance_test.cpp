@@ -187,7 +187,7 @@ TEST(Importance, InvalidPointsAndRaysHaveNoImportance) {
       EXPECT_EQ(s.importance.we, 0);
       EXPECT_TRUE(std::isfinite(s.direction.x + s.distance + s.on_front.z + s.pdf));
       expect_finite(s.importance);
-      EXPECT_EQ(camera.project(point).status, ProjectionStatus::not_visible) << point.z;
+      EXPECT_EQ(camera.project(point).status, AimStatus::no_ray) << point.z;
     }
     for (const Ray<double>& ray :
          {Ray<double>{{nan, 0, -1000}, {0, 0, 1}}, Ray<double>{{0, 0, -1000}, {0, nan, 1}},

@@ -63,10 +63,10 @@ TEST_P(Projections, EqualAimedChiefRays) {
       SCOPED_TRACE(std::to_string(field * 180 / pi) + " degrees, " + std::to_string(distance) + " mm, " +
                    std::string(name(p.status)));
       if (!film.contains(wanted)) {
-        EXPECT_TRUE(p.status == ProjectionStatus::outside_film || p.status == ProjectionStatus::not_visible);
+        EXPECT_TRUE(p.status == AimStatus::outside_film || p.status == AimStatus::no_ray);
         continue;
       }
-      EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == ProjectionStatus::vignetted));
+      EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == AimStatus::vignetted));
       if (!p) continue;
       ++converged;
       EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, near);
@@ -126,7 +126,7 @@ TEST(Projection, ClippedChiefRaysAreExact) {
       if (!chief || z > -1000) continue;
       const FilmPoint wanted = at_film(lens, chief.end.ray);
       const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
-      if (p.status == ProjectionStatus::converged || p.status == ProjectionStatus::not_visible) continue;
+      if (p.status == AimStatus::converged || p.status == AimStatus::no_ray) continue;
       ++clipped;
       EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 2e-5 * film.radius_mm()) << field;
     }
@@ -210,10 +210,10 @@ TEST(Projection, TiltedFilmEqualsAimedChiefRays) {
     const FilmPoint wanted = tilted.point(origin + t * direction);
     const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
     if (!tilted.contains(wanted)) {
-      EXPECT_EQ(p.status, ProjectionStatus::outside_film);
+      EXPECT_EQ(p.status, AimStatus::outside_film);
       continue;
     }
-    EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == ProjectionStatus::vignetted));
+    EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == AimStatus::vignetted));
     if (!p) continue;
     ++converged;
     EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 5e-4);
@@ -223,13 +223,6 @@ TEST(Projection, TiltedFilmEqualsAimedChiefRays) {
     EXPECT_NEAR(std::hypot(chief_importance.film.x - wanted.x, chief_importance.film.y - wanted.y), 0, 1e-9);
   }
   EXPECT_GT(converged, 100);
-}
-
-TEST(Projection, HasNames) {
-  EXPECT_EQ(name(ProjectionStatus::converged), "converged");
-  EXPECT_EQ(name(ProjectionStatus::outside_film), "outside_film");
-  EXPECT_EQ(name(ProjectionStatus::vignetted), "vignetted");
-  EXPECT_EQ(name(ProjectionStatus::not_visible), "not_visible");
 }
 
 }  // namespace projection_test

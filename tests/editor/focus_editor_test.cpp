@@ -80,7 +80,7 @@ TEST(FocusEditor, FocalSurfaceMeetsAnyPoints) {
   EXPECT_NEAR(mark(editor, "b").blur_px.value(), 3, 0.5);
   EXPECT_NEAR(mark(editor, "c").blur_px.value(), 0, 1e-6);
   EXPECT_EQ(editor.state().camera().model(), ModelKind::thin);
-  EXPECT_LT(editor.state().camera().focal_steepness().steepness, 1);
+  EXPECT_LT(editor.state().camera().focal_steepness(), 1);
 }
 
 TEST(FocusEditor, ReachesARequestedBlurInPixels) {

@@ -29,7 +29,7 @@ class ChromaticBokeh : public Programs {
   std::map<std::string, std::vector<float>> channels(const nlohmann::json& picture) const {
     std::map<std::string, std::vector<float>> result;
     for (const auto& part : petzval::read_exr_parts(path("out/" + picture["file"].get<std::string>()))) {
-      for (const auto& channel : part.channels) result[channel.name] = channel.values;
+      result.insert(part.channels.begin(), part.channels.end());
     }
     return result;
   }

@@ -43,12 +43,7 @@ TEST_F(Export, TablesOfOmniverseAreFiles) {
 /// A ray by the description in a file, from the channels of a part.
 petzval::Ray<double> described(const nlohmann::json& head, const petzval::ExrPart& part, int column, int row) {
   const auto pixel = static_cast<std::size_t>(row * part.width + column);
-  const auto value = [&](const std::string& name) {
-    for (const petzval::ExrChannel& channel : part.channels) {
-      if (channel.name == name) return double{channel.values[pixel]};
-    }
-    throw petzval::Error("no channel " + name);
-  };
+  const auto value = [&](const std::string& name) { return double{part.channels.at(name)[pixel]}; };
   if (head.at("layout") == "directions") {
     return {{value("x"), value("y"), value("z")}, glm::normalize(Vec3{value("dx"), value("dy"), value("dz")})};
   }
@@ -126,10 +121,8 @@ TEST_F(Export, HalvesAreRoundedOnceAndChiefRaysAreOnePart) {
   const petzval::RayMap map = petzval::ray_map(camera, {.lens_samples = 1, .half = true});
   const std::vector<std::string_view> names = map.channels();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    for (const petzval::ExrChannel& channel : parts[0].channels) {
-      if (channel.name != names[k]) continue;
-      for (std::size_t i = 0; i < channel.values.size(); ++i) EXPECT_EQ(channel.values[i], map.channel(0, k)[i]);
-    }
+    const std::vector<float>& values = parts[0].channels.at(std::string(names[k]));
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], map.channel(0, k)[i]);
   }
   EXPECT_LT(std::filesystem::file_size(path("rays.exr")), 24u * 16 * 5 * 2 + 3000);
   expect_failure("export", {lens("double_gauss_100mm_f2.0")}, {"--calibration", "--ray-map"});

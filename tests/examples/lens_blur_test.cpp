@@ -101,13 +101,12 @@ TEST_F(LensBlurProgram, LayersAndDeepImagesGiveEqualPictures) {
   std::vector<petzval::ExrPart> parts;
   for (const char* name : {"near", "far"}) {
     parts.push_back({.name = name, .width = 24, .height = 16, .channels = {}});
-    for (const char* channel : {"B", "G", "R", "Z"})
-      parts.back().channels.push_back({channel, std::vector<float>(384)});
+    for (const char* channel : {"B", "G", "R", "Z"}) parts.back().channels[channel].resize(384);
   }
   for (std::size_t i = 0; i < 384; ++i) {
     const auto put = [&](std::size_t part, float depth, float value) {
-      for (std::size_t c = 0; c < 3; ++c) parts[part].channels[c].values[i] = value;
-      parts[part].channels[3].values[i] = depth;
+      for (const char* channel : {"B", "G", "R"}) parts[part].channels[channel][i] = value;
+      parts[part].channels["Z"][i] = depth;
       lists.fragments.push_back({depth, value, value, value, 1});
     };
     // A part without a surface at a pixel has the depth 0.

@@ -60,7 +60,7 @@ class Setup : public Programs {
     std::ranges::sort(files);
     for (const auto& file : files) {
       for (const petzval::ExrPart& part : petzval::read_exr_parts(file)) {
-        for (const auto& channel : part.channels) all.push_back(channel.values);
+        for (const auto& [name, values] : part.channels) all.push_back(values);
       }
     }
     EXPECT_FALSE(all.empty());

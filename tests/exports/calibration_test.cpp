@@ -62,7 +62,7 @@ void directions(const Camera& camera, double widest, const Of& of) {
     const double field = widest * uniform(random), azimuth = 6.283185307179586 * uniform(random);
     const Vec3<double> d{std::sin(field) * std::cos(azimuth), std::sin(field) * std::sin(azimuth), std::cos(field)};
     const Projection at = camera.project({subject * d.x, -subject * d.y, pupil_z - subject * d.z});
-    if (at.status != ProjectionStatus::converged) continue;
+    if (at.status != AimStatus::converged) continue;
     of(d, at.raster), ++seen;
   }
   EXPECT_GT(seen, 50);
@@ -216,7 +216,7 @@ TEST(OmniverseTables, BothTablesFollowTheProjectionOfTheCamera) {
       EXPECT_NEAR(std::hypot(d.x, d.y, d.z), 1, 1e-6);
       if (d.z == 1) continue;
       const Projection at = seen(d);
-      if (at.status != ProjectionStatus::converged) continue;
+      if (at.status != AimStatus::converged) continue;
       EXPECT_NEAR(at.raster.x, column + 0.5, 2e-3);
       EXPECT_NEAR(at.raster.y, row + 0.5, 2e-3);
       ++lit, beyond_90 += d.z > 0;
@@ -225,7 +225,7 @@ TEST(OmniverseTables, BothTablesFollowTheProjectionOfTheCamera) {
       const int column = static_cast<int>(random() % 513), row = static_cast<int>(random() % 513);
       const float* const texel = &tables.positions[2 * (static_cast<std::size_t>(row) * 513 + column)];
       const Projection at = seen(exit_direction(tables, column, row));
-      if (at.status != ProjectionStatus::converged) continue;
+      if (at.status != AimStatus::converged) continue;
       EXPECT_NEAR(texel[0] * 1920, at.raster.x, 2e-3);
       EXPECT_NEAR(texel[1] * 1280, at.raster.y, 2e-3);
       ++found;

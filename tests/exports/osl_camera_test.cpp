@@ -370,7 +370,7 @@ TEST(OslCamera, PixelsInThePlaneOfFocusEqualTheCamera) {
       const auto own_pixel =
           at_z(towards_film(found[i].p, found[i].d, origin, s.units), towards_film(p, d, 0, s.units), z);
       // Raster y of Cycles runs upwards.
-      const auto pixel = at_z(by.sample.ray, k == 0 ? raster.by_x : raster.by_y, z) * (k == 0 ? 1.0 : -1.0);
+      const auto pixel = at_z(by.sample.ray, raster[static_cast<std::size_t>(k)], z) * (k == 0 ? 1.0 : -1.0);
       worst = std::max(worst, glm::length(own_pixel - pixel) / glm::length(pixel));
     }
   }

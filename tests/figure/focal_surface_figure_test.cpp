@@ -29,8 +29,7 @@ const std::vector<FocalPoint> in_section{{.film_point = {0, -9}, .inverse_distan
 
 std::string drawn(const std::vector<FocalPoint>& points, const Film& on = film) {
   const FocalSurface surface(lens, film, points);
-  return focal_surface_figure(
-      {.title = "A <lens>", .remark = "f/2 & more", .lens = lens, .film = on, .surface = surface, .points = points});
+  return focal_surface_figure("A <lens>", "f/2 & more", lens, on, surface, points);
 }
 
 TEST(FocalSurfaceFigure, TheSurfaceGoesThroughItsPoints) {

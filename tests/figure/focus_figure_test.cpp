@@ -45,7 +45,7 @@ Line line_of(const std::string& svg, const std::string& name) {
 }
 
 double rms(const Lens& lens, double field, double film_z) {
-  return spot_diagram(with_film(lens, film_z), -infinity, std::array{field}).front().size.rms_radius;
+  return spot_diagram(with_film(lens, film_z), -infinity, std::array{field})[0][0].size.rms_radius;
 }
 
 TEST(FocusFigure, TheParabolaIsTheSpotAtEveryFilmPosition) {

@@ -28,15 +28,15 @@ constexpr const char* wedge = "fill=\"#dff2e3\"";
 /// A plane that rises away from the camera: the Scheimpflug line lies within the drawing.
 const Plane table{{0, std::cos(0.3), std::sin(0.3)}, -300};
 
-std::vector<TiltFigurePoint> points_of(const Plane& plane) {
-  std::vector<TiltFigurePoint> result;
+std::vector<FocusTarget> points_of(const Plane& plane) {
+  std::vector<FocusTarget> result;
   for (const double z : {-800.0, -1000.0, -1500.0}) {
-    result.push_back({{{0.1 * z, (plane.offset - plane.normal.z * z) / plane.normal.y, z}, false}, true});
+    result.push_back({{{0.1 * z, (plane.offset - plane.normal.z * z) / plane.normal.y, z}, false}});
   }
   return result;
 }
 
-TiltView view(const IdealLens& lens, const Plane& plane, const std::vector<TiltFigurePoint>& points) {
+TiltView view(const IdealLens& lens, const Plane& plane, const std::vector<FocusTarget>& points) {
   TiltView result;
   result.title = "A <lens>";
   result.remark = "f/4 & more";
@@ -148,15 +148,15 @@ TEST(TiltFigure, PlaneOfFocusIsDrawnForAnyFilm) {
 
 TEST(TiltFigure, SwingIsSeenFromAbove) {
   const Plane wall{{std::cos(0.3), 0, std::sin(0.3)}, -300};
-  const std::vector<TiltFigurePoint> points{{{{-100, 50, (-300 + 100 * std::cos(0.3)) / std::sin(0.3)}, false}, true}};
+  const std::vector<FocusTarget> points{{{{-100, 50, (-300 + 100 * std::cos(0.3)) / std::sin(0.3)}, false}}};
   const std::string svg = tilt_figure(view(thin_lens(100, 4), wall, points));
   EXPECT_NE(svg.find(">x (mm)<"), std::string::npos);
   EXPECT_EQ(svg.find(">y (mm)<"), std::string::npos);
 }
 
 TEST(TiltFigure, AnUprightFilmHasNoLinesAndPointsAtInfinityArrows) {
-  std::vector<TiltFigurePoint> points{
-      {{{0, 0.1, -1}, true}, true}, {{{0, 0, -3000}, false}, true}, {{{0, 900, -2500}, false}, false}};
+  std::vector<FocusTarget> points{
+      {{{0, 0.1, -1}, true}}, {{{0, 0, -3000}, false}}, {.point = {{0, 900, -2500}}, .weight = 0}};
   TiltView upright = view(thin_lens(50, 2), {{0, 0, 1}, -2000}, points);
   upright.after.tilt_rad = upright.after.swing_rad = 0;
   const std::string svg = tilt_figure(upright);

@@ -27,7 +27,7 @@ using testing::expect_tokens;
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFitStatus;
+using Status = FocusStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -414,16 +414,6 @@ TEST(TiltFitInput, IsCheckedAndNamed) {
   expect_tokens(said({.film = {.width_mm = -1}}), {"fit_tilt", "film", -1, 24, 0, 0});
   expect_tokens(said({.film = {.shift_x_mm = infinity}}), {"fit_tilt", "film", 36, 24, "inf", 0});
   EXPECT_EQ(said({.max_tilt_rad = radians(89.9)}), "no error");
-}
-
-TEST(TiltFitStatus, HasAName) {
-  using enum TiltFitStatus;
-  EXPECT_EQ(name(solved), "solved");
-  EXPECT_EQ(name(least_tilt), "least_tilt");
-  EXPECT_EQ(name(limited), "limited");
-  EXPECT_EQ(name(no_targets), "no_targets");
-  EXPECT_EQ(name(unreachable), "unreachable");
-  EXPECT_EQ(name(not_converged), "not_converged");
 }
 
 }  // namespace tilt_fit_limits_test

@@ -19,7 +19,7 @@ namespace tilt_fit_rays_test {
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFitStatus;
+using Status = FocusStatus;
 using Targets = std::vector<FocusTarget>;
 
 const Lens& gauss() {

@@ -16,7 +16,7 @@ namespace petzval {
 namespace tilt_fit_robust_test {
 
 using namespace testing;
-using Status = TiltFitStatus;
+using Status = FocusStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 

@@ -22,7 +22,7 @@ namespace tilt_fit_test {
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFitStatus;
+using Status = FocusStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 constexpr double F = 50;

@@ -72,8 +72,8 @@ Counts gathers(Case& at) {
       counts.measure("even colours", std::max(0.5f - least, most - 0.5f));
     }
     counts.kinds["pixels"] += picture.missed.size();
-    counts.kinds["rays"] += picture.statistics.rays;
-    counts.kinds["rays that met no known surface"] += picture.statistics.missed;
+    counts.kinds["rays"] += picture.ray_count;
+    counts.kinds["rays that met no known surface"] += picture.missed_count;
     counts.done += picture.missed.size();
   } catch (const Error&) {
     ++counts.kinds["(layers refused)"];

@@ -24,7 +24,7 @@ namespace autofocus_test {
 using testing::data_lens;
 using testing::expect_error;
 using testing::film_at;
-using enum AutofocusStatus;
+using enum FocusStatus;
 using enum FocusCriterion;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -53,7 +53,7 @@ inline void check(const ImportanceSample& found, double rounding) {
 }
 
 inline void check(const Projection& seen) {
-  if (seen.status == ProjectionStatus::not_visible) return;
+  if (seen.status == AimStatus::no_ray) return;
   require(finite(seen.film) && finite(seen.raster), "a projection is finite");
 }
 

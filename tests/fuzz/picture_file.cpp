@@ -31,8 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::done([&] { whole(read_exr(path)); });
     fuzz::done([&] {
       for (const ExrPart& part : read_exr_parts(path)) {
-        for (const ExrChannel& channel : part.channels) {
-          fuzz::require(channel.values.size() == std::size_t(part.width) * std::size_t(part.height),
+        for (const auto& [name, values] : part.channels) {
+          fuzz::require(values.size() == std::size_t(part.width) * std::size_t(part.height),
                         "a channel has a value for each pixel");
         }
       }

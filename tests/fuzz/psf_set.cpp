@@ -29,14 +29,14 @@ PsfKernel kernel_of(fuzz::Bytes& bytes) {
 void damage(ExrPart& part, fuzz::Bytes& bytes) {
   const auto some = [&](auto& map) { return std::next(map.begin(), bytes.byte() % static_cast<long>(map.size())); };
   switch (bytes.count(0, 7)) {
-    case 0: part.channels.erase(part.channels.begin() + bytes.byte() % static_cast<long>(part.channels.size())); break;
-    case 1: part.channels[0].values.resize(static_cast<std::size_t>(bytes.count(0, 20))); break;
+    case 0: part.channels.erase(some(part.channels)); break;
+    case 1: part.channels.begin()->second.resize(static_cast<std::size_t>(bytes.count(0, 20))); break;
     case 2: part.numbers.erase(some(part.numbers)); break;
     case 3: some(part.numbers)->second = bytes.wild(); break;
     case 4: part.texts.erase(some(part.texts)); break;
     case 5: some(part.texts)->second += static_cast<char>(bytes.byte()); break;
     case 6: part.width = bytes.count(0, 5); break;
-    default: part.channels[0].values[0] = static_cast<float>(bytes.wild()); break;
+    default: part.channels.begin()->second[0] = static_cast<float>(bytes.wild()); break;
   }
 }
 
@@ -47,17 +47,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::done([&] {
     const PsfSetPoint point{bytes.number(0, 90), bytes.number(100, 1e4), bytes.number(400, 700), bytes.number(1, 22)};
     ExrPart part = to_exr_part(kernel_of(bytes), point);
-    for (int i = bytes.count(0, 2); i > 0 && !part.channels.empty() && !part.channels[0].values.empty(); --i) {
+    for (int i = bytes.count(0, 2); i > 0 && !part.channels.empty() && !part.channels.begin()->second.empty(); --i) {
       damage(part, bytes);
     }
-    const PsfPart read = from_exr_part(part);
-    const ExrPart again = to_exr_part(read.kernel, read.point);
+    const auto [place, read] = from_exr_part(part);
+    const ExrPart again = to_exr_part(read, place);
     fuzz::require(again.texts == part.texts, "a part round-trips with the same checksum");
 
-    const PsfSet set(
-        {{read.point.field_deg}, {read.point.distance_mm}, {read.point.wavelength_nm}, {read.point.f_number}},
-        {read.kernel});
-    fuzz::require(set.at(read.point).pixels == read.kernel.pixels, "a set has the kernel of its node");
+    const PsfSet set({{place.field_deg}, {place.distance_mm}, {place.wavelength_nm}, {place.f_number}}, {read});
+    fuzz::require(set.at(place).pixels == read.pixels, "a set has the kernel of its node");
   });
   return 0;
 }

@@ -98,9 +98,9 @@ TEST_F(ImageFiles, ExrPartsRoundTripToTheBit) {
       EXPECT_EQ(back[i].texts, parts[i].texts);
       EXPECT_EQ(back[i].numbers, parts[i].numbers);
       ASSERT_EQ(back[i].channels.size(), parts[i].channels.size());
-      for (std::size_t c = 0; c < parts[i].channels.size(); ++c) {
-        EXPECT_EQ(back[i].channels[c].name, parts[i].channels[c].name);
-        EXPECT_TRUE(same(back[i].channels[c].values, parts[i].channels[c].values)) << i << ' ' << c;
+      for (const auto& [name, values] : parts[i].channels) {
+        ASSERT_TRUE(back[i].channels.contains(name));
+        EXPECT_TRUE(same(back[i].channels.at(name), values)) << i << ' ' << name;
       }
     }
   }
@@ -121,7 +121,7 @@ TEST_F(ImageFiles, ExrKeepsMarginsPairsAndStandardFloats) {
     EXPECT_EQ(back[0].margin_y, count == 1 ? 1 : 0);
     EXPECT_EQ(back[0].pairs, parts[0].pairs);
     EXPECT_EQ(back[0].numbers.at("aperture"), double{2.8f});
-    EXPECT_EQ(back[0].channels[1].values, parts[0].channels[1].values);
+    EXPECT_EQ(back[0].channels, parts[0].channels);
   }
 }
 
@@ -149,9 +149,8 @@ TEST_F(ImageFiles, RefusesInvalidExrParts) {
   refused([](Parts& p) { p.clear(); }, {"part"});
   refused([](Parts& p) { p[1].channels.clear(); }, {"part \"second\"", "channel"});
   refused([](Parts& p) { p[1].width = 0; }, {"part \"second\"", 0, 40});
-  refused([](Parts& p) { p[0].channels[1].values.pop_back(); }, {"channel Y", 20, 7, 3});
-  refused([](Parts& p) { p[0].channels[1].name = "S0.475nm"; }, {"channel", "S0.475nm"});
-  refused([](Parts& p) { p[0].channels[1].name.clear(); }, {"channel"});
+  refused([](Parts& p) { p[0].channels.at("Y").pop_back(); }, {"channel Y", 20, 7, 3});
+  refused([](Parts& p) { p[0].channels[""] = p[0].channels.at("Y"); }, {"channel"});
   refused([](Parts& p) { p[1].name = "first"; }, {"part \"first\""});
   refused([](Parts& p) { p[1].name.clear(); }, {"name"});
   refused([](Parts& p) { p[0].texts["type"] = "deepscanline"; }, {"attribute", "type"});

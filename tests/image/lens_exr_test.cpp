@@ -76,10 +76,7 @@ TEST(LensExr, HasStandardAttributesWithTypesAndUnits) {
   EXPECT_EQ(again.pairs, part.pairs);
 }
 
-const std::vector<float>& channel(const ExrPart& part, const std::string& name) {
-  return std::find_if(part.channels.begin(), part.channels.end(), [&](const ExrChannel& c) { return c.name == name; })
-      ->values;
-}
+const std::vector<float>& channel(const ExrPart& part, const std::string& name) { return part.channels.at(name); }
 
 /// The raster position that a pixel of a part shows; (0, 0) is the upper left corner of the film.
 Vec2<double> shown(const ExrPart& part, const Film& film, int column, int row) {

@@ -76,8 +76,8 @@ TEST(PsfSetExr, RefusesChangedAndOtherParts) {
     change(part);
     expect_error([&] { from_exr_part(part); }, {"part \"0deg_1000mm_587.5618nm_f2\"", token});
   };
-  refused([](ExrPart& p) { p.channels[0].values[4] += 1e-6f; }, "file");
-  refused([](ExrPart& p) { p.channels[2].values[8] = 0; }, "file");  // was -0
+  refused([](ExrPart& p) { p.channels.at("Y")[4] += 1e-6f; }, "file");
+  refused([](ExrPart& p) { p.channels.at("hits.y")[8] = 0; }, "file");  // was -0
   refused([](ExrPart& p) { p.numbers["error"] += 1e-16; }, "file");
   refused([](ExrPart& p) { p.numbers["more"] = 1; }, "file");
   refused([](ExrPart& p) { p.texts["anchor"] = "chief_ray"; }, "file");

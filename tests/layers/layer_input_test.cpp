@@ -136,7 +136,7 @@ TEST_F(LayerInputFiles, DepthsOfAnExrGiveWayToDepth) {
   given.image = path("picture.exr");
   EXPECT_EQ(layer(given), expected);
   petzval::ExrPart part = petzval::read_exr_parts(path("picture.exr")).front();
-  part.channels.push_back({"Z", std::vector<float>(pixels, 500)});
+  part.channels["Z"].assign(pixels, 500);
   petzval::write_exr({&part, 1}, path("picture.exr"));
   EXPECT_EQ(layer(given), expected);
 }

@@ -232,7 +232,7 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
     most = std::max(most, layers.count());
     // The layers are sufficient: no ray finds a hole.
     const petzval::BlurredImage blurred = petzval::gather(layers, rays, {.threads = 2, .highlights_above = 0});
-    EXPECT_LE(static_cast<double>(blurred.statistics.missed), 1e-4 * static_cast<double>(blurred.statistics.rays));
+    EXPECT_LE(static_cast<double>(blurred.missed_count), 1e-4 * static_cast<double>(blurred.ray_count));
   }
   EXPECT_GE(most, 8);
 }

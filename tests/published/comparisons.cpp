@@ -137,7 +137,7 @@ double noll(const Wavefront& front, int j) {
 }
 
 Wavefront wavefront_of(const Lens& lens, const FieldPoint& point) {
-  const auto front = wavefront(lens, point, {.coordinates = PupilCoordinates::entrance, .directions = 96});
+  const auto front = wavefront(lens, point, {}, PupilCoordinates::entrance, 96);
   if (!front) throw std::runtime_error("comparisons: no wavefront");
   return *front;
 }

@@ -136,12 +136,12 @@ TEST(Apertures, StopLimitsTheBeamInEveryLens) {
     const auto image = [&](const Lens& lens, double part) {
       return point_image(lens, {radians(part * p.half_field_deg.value_or(20)), -infinity}, options);
     };
-    const PointImage axis = image(found, 0), axis_of_given = image(given, 0);
+    const Psf axis = image(found, 0), axis_of_given = image(given, 0);
     EXPECT_LE(axis.size.rms_radius, 1.15 * axis_of_given.size.rms_radius + 1e-12) << p.id;
     EXPECT_GE(axis.size.rms_radius, 0.85 * axis_of_given.size.rms_radius - 1e-12) << p.id;
     // No light outside the marginal ray. Pupils larger than the paraxial pupil exceed 1 also with given apertures.
     const double beam = paraxial_f_number(found) / real_f_number(found);
-    EXPECT_LE(axis.throughput, 1.005 * beam * beam) << p.id;
+    EXPECT_LE(axis.mean_throughput, 1.005 * beam * beam) << p.id;
 
     const auto last = up_to_part_of_the_field.find(p.id);
     for (const double part : {0.0, 0.5, 0.7, 0.85, 1.0}) {
@@ -166,10 +166,10 @@ TEST(Apertures, AreNotNeededForThePupil) {
     const Lens found = with_film(compile(with_stop_alone(p)), film_z), open = with_film(compile(unlimited), film_z);
     for (const double part : {0.0, 0.7, 1.0}) {
       const FieldPoint point{radians(part * p.half_field_deg.value_or(20)), -infinity};
-      const PointImage a = point_image(found, point, {.samples = 4096, .pixels = 16});
-      const PointImage b = point_image(open, point, {.samples = 4096, .pixels = 16});
+      const Psf a = point_image(found, point, {.samples = 4096, .pixels = 16});
+      const Psf b = point_image(open, point, {.samples = 4096, .pixels = 16});
       EXPECT_NEAR(b.size.rms_radius, a.size.rms_radius, 0.01 * a.size.rms_radius) << id << " at " << part;
-      EXPECT_NEAR(b.throughput, a.throughput, 1e-3) << id << " at " << part;
+      EXPECT_NEAR(b.mean_throughput, a.mean_throughput, 1e-3) << id << " at " << part;
     }
   }
 }
@@ -206,10 +206,9 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
   };
   const Pupil entrance = pupils(lens).entrance;
   for (const auto& [field, wavelength, rms] : {Row{0, 0, 0.003791}, Row{14, 1, 0.016786}, Row{20, 2, 0.013596}}) {
-    const PointImage image =
-        point_image(lens, {radians(field), -infinity}, {.samples = 16384, .wavelength = wavelength});
+    const Psf image = point_image(lens, {radians(field), -infinity}, {.samples = 16384, .wavelength = wavelength});
     EXPECT_NEAR(image.size.rms_radius, rms, (field == 0 ? 0.04 : 0.15) * rms) << field;
-    EXPECT_LE(image.throughput, 1.1) << field;
+    EXPECT_LE(image.mean_throughput, 1.1) << field;
     // Without ray aiming the beam fills the paraxial entrance pupil instead of the stop.
     const auto launched = [&, angle_rad = radians(field)](std::size_t at) {
       std::vector<Vec2<double>> hits;

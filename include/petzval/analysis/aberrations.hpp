@@ -31,7 +31,7 @@ struct RayFan {
   std::vector<Point> points;
 };
 
-/// Ray fans of several fields at every compiled wavelength, ordered by field, then by wavelength.
+/// Ray fans of several fields at every compiled wavelength: [field][wavelength].
 ///
 /// The tangential error is along y on the film, the sagittal error along x. Rays are aimed at the stop exactly (aim()).
 ///
@@ -40,8 +40,8 @@ struct RayFan {
 /// @param fields_rad  field angles towards +y (rad), as in FieldPoint
 /// @param count       positions on the stop, at least 2; evenly spaced from -1 to 1
 /// @throws Error      if count is below 2, or under the conditions of aim()
-PETZVAL_API std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                         std::size_t count = 33);
+PETZVAL_API Grid<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                  std::size_t count = 33);
 
 /// Foci of narrow beams about the chief ray of one field, as distances from the film along the axis (mm), positive away
 /// from the lens. nullopt: no chief ray reaches the film, or the beam stays parallel.
@@ -87,19 +87,17 @@ struct MtfPoint {
   double sampling_error = 0;
 };
 
-/// Geometric MTF from spots, ordered by field, then by frequency.
+/// Geometric MTF from spots: [field][frequency].
 ///
-/// @param spots               result of spot_diagram(): all wavelengths of each field
-/// @param wavelengths         number of wavelengths of each field
+/// @param spots               result of spot_diagram()
 /// @param frequencies_per_mm  spatial frequencies (line pairs per mm)
 /// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
 /// @param threads             at least 1; they share the points, and the result is the same for every number
-/// @throws Error  if the number of spots is not a multiple of `wavelengths`, or the number of weights differs
+/// @throws Error  if the number of weights differs
 ///
 /// Accuracy: 1e-3 with 32768 rays per field and wavelength, 0.01 with 4096 (tests/analysis/aberrations_test.cpp).
-PETZVAL_API std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wavelengths,
-                                                std::span<const double> frequencies_per_mm,
-                                                std::span<const double> wavelength_weights = {}, int threads = 1);
+PETZVAL_API Grid<MtfPoint> geometric_mtf(const Grid<Spot>& spots, std::span<const double> frequencies_per_mm,
+                                         std::span<const double> wavelength_weights = {}, int threads = 1);
 
 /// The radius about the centroid that holds a fraction of the rays of one field, without diffraction.
 struct EncircledEnergy {
@@ -108,15 +106,13 @@ struct EncircledEnergy {
   double sampling_error_mm = 0;     ///< as MtfPoint::sampling_error
 };
 
-/// Geometric encircled energy, ordered by field, then by fraction. Centroid and fraction refer to all wavelengths.
+/// Geometric encircled energy: [field][fraction]. Centroid and fraction refer to all wavelengths.
 ///
-/// @param spots, wavelengths, wavelength_weights, threads  as in geometric_mtf()
+/// @param spots, wavelength_weights, threads  as in geometric_mtf()
 /// @param fractions  from 0 to 1; 1 is the largest radius
 /// @throws Error     as geometric_mtf(), or if a fraction is outside 0 to 1
-PETZVAL_API std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::size_t wavelengths,
-                                                          std::span<const double> fractions,
-                                                          std::span<const double> wavelength_weights = {},
-                                                          int threads = 1);
+PETZVAL_API Grid<EncircledEnergy> encircled_energy(const Grid<Spot>& spots, std::span<const double> fractions,
+                                                   std::span<const double> wavelength_weights = {}, int threads = 1);
 
 /// The crossing of the axis by a ray of the axial point, as a distance from the film along z (mm).
 struct AxialRayFocus {
@@ -127,15 +123,14 @@ struct AxialRayFocus {
   std::optional<double> tangential_mm, sagittal_mm;
 };
 
-/// Longitudinal aberration at every compiled wavelength, ordered by wavelength, then by position on the stop.
+/// Longitudinal aberration at every compiled wavelength: [wavelength][position on the stop].
 ///
 /// @param lens, subject_z  as in ray_fans()
 /// @param count       positions on the stop, at least 2; evenly spaced from 0 to 1
 /// @throws Error      if count is below 2, or under the conditions of aim()
 ///
 /// Accuracy: rounding, and at 0 the ray at 0.001 semi-diameters.
-PETZVAL_API std::vector<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subject_z,
-                                                               std::size_t count = 33);
+PETZVAL_API Grid<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subject_z, std::size_t count = 33);
 
 /// MTF of an ideal lens with a round pupil on the axis.
 ///

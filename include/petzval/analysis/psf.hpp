@@ -16,7 +16,8 @@ namespace petzval {
 
 class Camera;
 
-/// Geometric image of a point light: the distribution over the film of the light that enters the entrance pupil.
+/// Geometric image of a point light and its size: the distribution over the film of the light that enters the entrance
+/// pupil.
 ///
 /// Counts are exact integers. Their sum is the number of rays that hit the image, for any number of threads; weighted
 /// rays count in units of 1 / units_per_ray. Each wavelength has one plane of `pixels` x `pixels` counts, rows from the
@@ -32,6 +33,18 @@ struct Psf {
   std::uint32_t units_per_ray = 1;         ///< counts of a ray of weight 1
   std::vector<double> sampled_area;        ///< area of the pupil plane where the rays start, mm^2, per wavelength
   double entrance_pupil_area = 0;  ///< area of the paraxial entrance pupil, mm^2; an ellipse for cylindrical lenses
+  SpotSize size;                   ///< over all wavelengths with equal weights
+  /// Irradiance in 64 rings of equal width from the centroid to size.max_radius, averaged over wavelengths: fraction of
+  /// the light on the paraxial entrance pupil, per mm^2. Multiplied by the ring areas it sums to the throughput.
+  std::array<double, 64> radial_profile{};
+  double mean_throughput = 0;  ///< throughput(), mean over wavelengths
+  /// Bound of the relative error of the light in the rings (root of the summed squares); 0 if no ray passes.
+  ///
+  /// Accuracy: 95 of 100 new runs stay below the bound (tests/analysis/psf_error_test.cpp). It is estimated from eight
+  /// consecutive parts of the samples, which complement each other. The bound is therefore about twice the error off
+  /// axis and with blades, and four to five times the error of round pupils on the axis. If the weights of a camera
+  /// vary strongly, it is 2.25 times as wide, because few rays determine the edge of a bright rim.
+  double error = 0;
 
   /// The fraction of the light on the paraxial entrance pupil that a count of 1 carries; 0 if the pupil is empty or the
   /// wavelength index is out of range.
@@ -47,7 +60,7 @@ struct Psf {
 /// Options of point_image().
 struct PsfOptions {
   std::uint32_t samples = 1u << 20;  ///< rays per wavelength; an upper limit if `tolerance` is set
-  /// If positive, rays are sent until PointImage::error is within the tolerance or all samples are used. Starts with
+  /// If positive, rays are sent until Psf::error is within the tolerance or all samples are used. Starts with
   /// 2^14 rays and doubles their number.
   double tolerance = 0;
   int pixels = 512;
@@ -56,23 +69,6 @@ struct PsfOptions {
   std::optional<std::size_t> wavelength{};  ///< wavelength index; unset: all compiled wavelengths
   std::uint32_t seed = 0;
   int threads = 1;  ///< does not change the results
-};
-
-/// The PSF of a point and the size of its blur. The size covers all wavelengths with equal weights.
-struct PointImage {
-  Psf psf;
-  SpotSize size;
-  /// Irradiance in 64 rings of equal width from the centroid to size.max_radius, averaged over wavelengths: fraction of
-  /// the light on the paraxial entrance pupil, per mm^2. Multiplied by the ring areas it sums to the throughput.
-  std::array<double, 64> radial_profile{};
-  double throughput = 0;  ///< mean over wavelengths
-  /// Bound of the relative error of the light in the rings (root of the summed squares); 0 if no ray passes.
-  ///
-  /// Accuracy: 95 of 100 new runs stay below the bound (tests/analysis/psf_error_test.cpp). It is estimated from eight
-  /// consecutive parts of the samples, which complement each other. The bound is therefore about twice the error off
-  /// axis and with blades, and four to five times the error of round pupils on the axis. If the weights of a camera
-  /// vary strongly, it is 2.25 times as wide, because few rays determine the edge of a bright rim.
-  double error = 0;
 };
 
 /// Computes the image of a point light in a camera at every compiled wavelength of its lens.
@@ -86,13 +82,13 @@ struct PointImage {
 ///
 /// Limitations: rays that miss the film are lost, so the film must contain the image. First-order models do not
 /// conserve etendue, so their throughput differs from the lens.
-PETZVAL_API PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options = {});
+PETZVAL_API Psf point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options = {});
 
 /// Traces a point light to the film of a lens at every compiled wavelength. All values are 0 if no ray passes.
 ///
 /// @throws Error if samples, pixels or threads are 0, or half_width_mm, tolerance or centre are invalid; also under the
 ///               conditions of scene_point()
-PETZVAL_API PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
+PETZVAL_API Psf point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
 
 /// The point spread kernel of one point and wavelength, for renderers and compositors.
 ///
@@ -116,19 +112,10 @@ struct PsfKernel {
   bool chief_ray = false;        ///< true if the anchor is the chief ray's hit; else the centroid, or (0, 0) if dark
   Vec2<double> anchor_mm{0, 0};  ///< on the film
   double total = 0;              ///< sum of `light`; includes every ray
-  double throughput = 0;         ///< PointImage::throughput
-  double error = 0;              ///< PointImage::error
+  double throughput = 0;         ///< Psf::mean_throughput
+  double error = 0;              ///< Psf::error
   double rays = 0;               ///< number of rays sent
   Diffraction diffraction = Diffraction::negligible;
-};
-
-/// Options of psf_kernel().
-struct PsfKernelOptions {
-  std::uint32_t samples = 1u << 20;
-  int pixels = 129;  ///< pixels per side, odd
-  std::uint32_t seed = 0;
-  int threads = 1;           ///< does not change the results
-  double half_width_mm = 0;  ///< half the width of the kernel; 0: 5 % larger than the hits
 };
 
 /// Computes the kernel of a point at one wavelength.
@@ -137,10 +124,10 @@ struct PsfKernelOptions {
 /// @param wide_open   the lens that defines the unit of light
 /// @param point       the scene point
 /// @param wavelength  wavelength index
-/// @param options     size, samples and threads
+/// @param options     as for point_image(); `pixels` is odd; `centre` and `wavelength` are not used
 /// @throws Error      if `pixels` is even or below 3; also under the conditions of point_image() and film_irradiance()
 PETZVAL_API PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& point,
-                                 std::size_t wavelength, const PsfKernelOptions& options = {});
+                                 std::size_t wavelength, const PsfOptions& options = {.pixels = 129});
 
 /// Total variation distance of two kernels, each normalised by its total: half the sum of absolute pixel differences.
 ///
@@ -204,9 +191,10 @@ class PETZVAL_API PsfSet {
   /// @throws Error if the point is outside the axes; an axis with a single value only contains that value
   ///
   /// Accuracy: total_variation() in percent against traced kernels in the middles of cells, median and largest, with a
-  /// noise of 0.5 to 1.3 (psf_set --check; steps of 5 to 20 degrees, five distances from 1 m to infinity, focused at 2
-  /// m): double Gauss f/2 1.8 and 5.8, f/2.8 2.2 and 3.1; fisheye 2.5 and 3.4; Tessar 6 and 21; double Gauss f/1.35 3
-  /// and 24. The last two are worst next to the focus, which needs closer nodes. Averaging images gives 70.
+  /// noise of 0.5 to 1.3 (petzval psf-set --check; steps of 5 to 20 degrees, five distances from 1 m to infinity,
+  /// focused at 2 m): double Gauss f/2 1.8 and 5.8, f/2.8 2.2 and 3.1; fisheye 2.5 and 3.4; Tessar 6 and 21; double
+  /// Gauss f/1.35 3 and 24. The last two are worst next to the focus, which needs closer nodes. Averaging images
+  /// gives 70.
   PsfKernel at(const PsfSetPoint& point) const;
 
  private:

@@ -32,7 +32,7 @@ struct LensReport {
     int first_surface_number = 0;                 ///< number of the first surface in to_json()
     int threads = 1;                              ///< at least 1; the result is the same for every number
   };
-  // Vectors of Quantity and Grid have no default values: with them, Clang 14 does not convert the vectors to std::span.
+  // As Grid, Quantity has no default values.
   /// A value, or the reason why it cannot be computed.
   template <class T>
   struct Quantity {
@@ -43,17 +43,6 @@ struct LensReport {
     /// @throws Error  with `failure` if there is no value
     const T& operator*() const { return value ? *value : throw Error(failure); }
     const T* operator->() const { return &**this; }
-  };
-  /// Values with two indices, grid[row][column].
-  template <class T>
-  struct Grid {
-    std::vector<T> values;  ///< row by row
-    std::size_t columns;    ///< at least 1
-
-    std::size_t size() const noexcept { return values.size() / columns; }  ///< number of rows
-    std::span<const T> operator[](std::size_t row) const noexcept {
-      return std::span(values).subspan(row * columns, columns);
-    }
   };
   /// First-order data in one meridian, at the primary wavelength.
   struct Section {

@@ -43,6 +43,20 @@ PETZVAL_API std::string_view name(Diffraction diffraction) noexcept;
 /// Classifies a blur by its Airy radius and its geometric radius sqrt(2) rms_radius, the radius of a uniform disc.
 PETZVAL_API Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept;
 
+/// Values with two indices, grid[row][column]. Functions of several fields return a row for each field.
+template <class T>
+struct Grid {
+  // No default values: with them, Clang 14 does not convert the vectors to std::span.
+  std::vector<T> values;  ///< row by row
+  std::size_t columns;
+
+  /// Number of rows.
+  std::size_t size() const noexcept { return columns > 0 ? values.size() / columns : 0; }
+  std::span<const T> operator[](std::size_t row) const noexcept {
+    return std::span(values).subspan(row * columns, columns);
+  }
+};
+
 /// The spot of one field and wavelength.
 struct Spot {
   FieldPoint point;
@@ -58,7 +72,7 @@ struct Spot {
   SpotSize size;
 };
 
-/// Spots of several fields on the film at every compiled wavelength, ordered by field, then by wavelength.
+/// Spots of several fields on the film at every compiled wavelength: [field][wavelength].
 ///
 /// @param lens        the focused lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
@@ -66,8 +80,8 @@ struct Spot {
 /// @param samples     rays per field and wavelength
 /// @param threads     at least 1; the spots are the same for every number
 /// @throws Error      under the conditions of scene_point(), or if threads is less than 1
-PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                           std::uint32_t samples = 4096, int threads = 1);
+PETZVAL_API Grid<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                    std::uint32_t samples = 4096, int threads = 1);
 
 /// The rays of one field, at all wavelengths, on a film that is moved along z.
 struct ThroughFocusSpot {
@@ -77,17 +91,14 @@ struct ThroughFocusSpot {
   double sampling_error_mm = 0;             ///< as MtfPoint::sampling_error
 };
 
-/// RMS radii on moved films, ordered by field, then by film. Follows from positions and slopes; no ray is traced.
+/// RMS radii on moved films: [field][film]. Follows from positions and slopes; no ray is traced.
 ///
-/// @param spots               result of spot_diagram(): all wavelengths of each field
-/// @param wavelengths         number of wavelengths of each field
+/// @param spots               result of spot_diagram()
 /// @param film_shifts_mm      shifts of the film towards +z (mm)
 /// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
-/// @throws Error  if the number of spots is not a multiple of `wavelengths`, the number of weights differs, or spots
-///                have no slopes
-PETZVAL_API std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> spots, std::size_t wavelengths,
-                                                        std::span<const double> film_shifts_mm,
-                                                        std::span<const double> wavelength_weights = {});
+/// @throws Error  if the number of weights differs, or spots have no slopes
+PETZVAL_API Grid<ThroughFocusSpot> through_focus(const Grid<Spot>& spots, std::span<const double> film_shifts_mm,
+                                                 std::span<const double> wavelength_weights = {});
 
 /// A film step for through_focus(): two steps from the best film the RMS radius over all fields is about three times
 /// its least value.
@@ -99,7 +110,7 @@ PETZVAL_API std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> sp
 /// @param spots, wavelength_weights  as in through_focus()
 /// @return       mm; nullopt if no ray passes or the rays of a field are parallel
 /// @throws Error as through_focus()
-PETZVAL_API std::optional<double> through_focus_step(const Lens& lens, std::span<const Spot> spots,
+PETZVAL_API std::optional<double> through_focus_step(const Lens& lens, const Grid<Spot>& spots,
                                                      std::span<const double> wavelength_weights = {});
 
 /// Longitudinal and lateral colour: differences of each compiled wavelength from the primary wavelength (mm).

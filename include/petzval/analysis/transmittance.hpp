@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "petzval/analysis/colour.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
@@ -41,22 +42,15 @@ PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<doub
 /// Accuracy: 1e-5 (tests/analysis/transmittance_test.cpp).
 PETZVAL_API std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {});
 
-/// The transmittance() of a field and a wavelength.
-struct FieldTransmittance {
-  double field_rad = 0;
-  std::size_t wavelength = 0;   ///< a compiled wavelength
-  std::optional<double> value;  ///< nullopt if no ray passes
-};
-
-/// The transmittance() of fields at all compiled wavelengths, ordered by field.
+/// The transmittance() of fields at all compiled wavelengths: [field][wavelength]; nullopt if no ray passes.
 ///
 /// @param lens        the lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad)
 /// @param threads     number of threads, at least 1
 /// @throws Error      under the conditions of transmittance() of a point
-PETZVAL_API std::vector<FieldTransmittance> transmittance(const Lens& lens, double subject_z,
-                                                          std::span<const double> fields_rad, int threads = 1);
+PETZVAL_API Grid<std::optional<double>> transmittance(const Lens& lens, double subject_z,
+                                                      std::span<const double> fields_rad, int threads = 1);
 
 /// True if a coating is stated for at least one surface (LensSurface::coating), so that the transmittance of the lens
 /// is known. Programs state transmittances and T-stops only then.

@@ -33,15 +33,6 @@ enum class PupilCoordinates : std::uint8_t {
   entrance,  ///< intersections with the plane of the paraxial entrance pupil, in its semi-diameters
 };
 
-/// Options of wavefront().
-struct WavefrontOptions {
-  Wavelength wavelength{};  ///< a compiled wavelength
-  PupilCoordinates coordinates = PupilCoordinates::stop;
-  /// Directions about the middle of the pupil, a multiple of 3, at least 12; up to nine times as many if the Strehl
-  /// ratio needs them.
-  std::size_t directions = 48;
-};
-
 /// Wavefront error of one field and wavelength over the exit pupil, in waves.
 ///
 /// The centre of the reference sphere is the chief ray on the film. Its radius is the length of the chief ray from the
@@ -79,20 +70,18 @@ struct Wavefront {
 ///
 /// @param lens   the focused lens
 /// @param point  the scene point
-/// @param options  wavelength, coordinates and number of rays
+/// @param wavelength   a compiled wavelength
+/// @param coordinates  of Wavefront::points and the Zernike coefficients
+/// @param directions   directions about the middle of the pupil, a multiple of 3, at least 12; up to nine times as many
+///                     if the Strehl ratio needs them
 /// @return       nullopt if the chief ray does not reach the film, or the pupil is empty
 /// @throws Error if the number of directions is not a multiple of 3 or below 12, or under the conditions of aim()
 ///
 /// Accuracy: paths within 1e-8 waves of sums in long double; rms_waves and Zernike coefficients within
 /// sampling_error_waves, and strehl within strehl_error, of ten times the rays (tests/analysis/wavefront_test.cpp).
-PETZVAL_API std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point,
-                                               const WavefrontOptions& options = {});
-
-/// Arithmetic of diffraction_psf().
-enum class DiffractionSum : std::uint8_t {
-  fft,      ///< fast Fourier transform over an even grid of directions behind the lens
-  huygens,  ///< one plane wave for each ray: time grows with pixels times rays, any window
-};
+PETZVAL_API std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {},
+                                               PupilCoordinates coordinates = PupilCoordinates::stop,
+                                               std::size_t directions = 48);
 
 /// Options of diffraction_psf().
 struct DiffractionOptions {
@@ -100,7 +89,9 @@ struct DiffractionOptions {
   double half_width_mm = 0;              ///< half of the image width; 0: 15 Airy radii, or the geometric blur and 5 %
   std::optional<Vec2<double>> centre{};  ///< film position of the image centre, mm; unset: the chief ray
   std::optional<std::size_t> wavelength{};  ///< wavelength index; unset: all compiled wavelengths
-  DiffractionSum sum = DiffractionSum::fft;
+  /// false: fast Fourier transform over a uniform grid of directions behind the lens. true: Huygens' sum, one plane
+  /// wave for each ray: time grows with pixels times rays, any window.
+  bool huygens = false;
   int threads = 1;  ///< does not change the results
 };
 

@@ -208,15 +208,6 @@ struct GatherOptions {
   std::stop_token stop{};
 };
 
-/// Counts and times of a gather().
-struct GatherStatistics {
-  std::uint64_t rays = 0;
-  std::uint64_t missed = 0;  ///< rays that met a region unknown to the layers
-  std::uint64_t steps = 0;   ///< summed over SIMD lanes
-  std::uint64_t highlights = 0;
-  double gather_seconds = 0, highlight_seconds = 0;
-};
-
 /// The result of gather(). It can be refilled without allocation if its size does not grow.
 ///
 /// Colours include the vignetting of the lens. `missed` and alpha are relative to the light that the lens passes at the
@@ -225,7 +216,11 @@ struct BlurredImage {
   int columns = 0, rows = 0;
   std::vector<float> rgba;    ///< columns x rows x 4, linear, premultiplied by alpha
   std::vector<float> missed;  ///< columns x rows: fraction of rays, by weight, that met regions unknown to the layers
-  GatherStatistics statistics;
+  std::uint64_t ray_count = 0;
+  std::uint64_t missed_count = 0;  ///< rays that met a region unknown to the layers
+  std::uint64_t step_count = 0;    ///< summed over SIMD lanes
+  std::uint64_t highlight_count = 0;
+  double gather_seconds = 0, highlight_seconds = 0;
 
   /// Working memory of gather().
   struct Memory;

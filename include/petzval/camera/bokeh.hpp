@@ -136,13 +136,4 @@ struct ExpressiveLens {
 /// Lenses far from first order, such as fisheyes, gain nothing.
 PETZVAL_API ExpressiveLens fit_expressive_lens(const Lens& lens, const Film& film = {});
 
-/// Largest steepness of a camera's focus over the film.
-///
-/// The steepness at a film point is the relative decrease of the distance between rays of neighbouring film points
-/// through the rim of the pupil.
-struct FocalSteepness {
-  double steepness = 0;  ///< below 1: every ray of the scene has one film point
-  FilmPoint film_point{};
-};
-
 }  // namespace petzval

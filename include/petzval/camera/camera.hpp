@@ -15,6 +15,7 @@
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/lens/wavelength.hpp"
 
 namespace petzval {
@@ -256,7 +257,7 @@ class PETZVAL_API Camera {
   /// @name Queries
   /// @{
 
-  /// Projects a scene point: film point and raster position of its chief ray. not_visible if the wavelength is outside
+  /// Projects a scene point: film point and raster position of its chief ray. no_ray if the wavelength is outside
   /// the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
 
@@ -269,12 +270,17 @@ class PETZVAL_API Camera {
 
   /// Largest steepness of the focal surface and the film offsets over the film; 0 without them.
   ///
+  /// The steepness at a film point is the relative decrease of the distance between rays of neighbouring film points
+  /// through the rim of the pupil. Below 1, every ray of the scene has one film point.
+  ///
   /// Evaluated at 96 x 64 film points as the shutter opens; narrower folds may be missed.
   ///
   /// Limitations: for a steepness of 1 or more, rays of several film points coincide. Film samples stay correct.
   /// Importance, connections and projections find only one of these film points, or no film point if the surface
   /// inverts the order of the rays, so that light tracing is too dark: trace paths from the film.
-  FocalSteepness focal_steepness() const noexcept;
+  ///
+  /// @param film_point  receives the film point, unless null
+  double focal_steepness(FilmPoint* film_point = nullptr) const noexcept;
 
   /// @}
 
@@ -293,5 +299,33 @@ class PETZVAL_API Camera {
 ///
 /// Limitations: tables of polynomials have only the compiled wavelengths.
 PETZVAL_API std::vector<float> camera_table(const Camera& camera);
+
+/// Renderers whose camera frames are known.
+enum class Host : std::uint8_t { pbrt, mitsuba, cycles, arnold, appleseed };
+
+/// Converts between the lens frame in mm and a host's camera frame in its unit of length.
+///
+/// A point (x, y, z) of the lens frame becomes (x, y, -z) for pbrt and Cycles (left-handed, +x right, +y up, view along
+/// +z), and (-x, y, -z) for Mitsuba (right-handed, +x left, +y up, view along +z). Arnold and appleseed look along -z,
+/// like the lens frame. Default units per mm: 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres
+/// (Arnold).
+class PETZVAL_API HostFrame {
+ public:
+  /// @throws Error  if the origin is an entrance pupil at infinity, or units_per_mm is not from 1e-15 to 1e15
+  HostFrame(Host host, const Lens& lens, DistanceOrigin origin);
+  HostFrame(Host host, const Lens& lens, DistanceOrigin origin, double units_per_mm);
+
+  double units_per_mm() const noexcept { return units_per_mm_; }
+  Vec3<double> point_to_host(const Vec3<double>& lens_mm) const noexcept;
+  Vec3<double> point_to_lens(const Vec3<double>& host) const noexcept;
+  Vec3<double> direction_to_host(const Vec3<double>& lens) const noexcept;
+  Vec3<double> direction_to_lens(const Vec3<double>& host) const noexcept;
+  Ray<double> to_host(const Ray<double>& lens) const noexcept;
+  Ray<double> to_lens(const Ray<double>& host) const noexcept;
+
+ private:
+  Vec3<double> signs_{1, 1, 1};
+  double origin_z_ = 0, units_per_mm_ = 1;
+};
 
 }  // namespace petzval

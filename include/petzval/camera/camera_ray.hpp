@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <string_view>
 
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 
@@ -81,11 +81,9 @@ struct CameraRayDifferential {
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
 };
 
-/// Derivatives of a camera ray by raster position (per pixel), for texture filters. Raster x runs opposite to film x.
-struct RasterDifferential {
-  Ray<double> by_x{{0, 0, 0}, {0, 0, 0}}, by_y{{0, 0, 0}, {0, 0, 0}};
-};
-PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const Film& film) noexcept;
+/// Derivatives of a camera ray by raster x and by raster y (per pixel), for texture filters. Raster x runs opposite to
+/// film x.
+PETZVAL_API std::array<Ray<double>, 2> by_raster(const CameraRayDifferential& ray, const Film& film) noexcept;
 
 /// Importance of a ray from the scene, for light tracing and bidirectional methods.
 ///
@@ -138,59 +136,17 @@ struct PathWavelength {
   RayFate fate = RayFate::vignetted;
 };
 
-/// Result of the search for a film point.
-enum class ProjectionStatus : std::uint8_t {
-  converged,     ///< the point's chief ray meets the film
-  outside_film,  ///< the chief ray meets the film plane outside the film
-  vignetted,     ///< the lens clips the chief ray; other rays of the point may pass
-  not_visible,   ///< the point has no chief ray, or its chief ray meets the film plane far outside the film
-};
-/// "converged", "outside_film", "vignetted" or "not_visible".
-PETZVAL_API std::string_view name(ProjectionStatus status) noexcept;
-
-/// The projection of a scene point; `film` and `raster` are set unless the status is not_visible.
+/// The projection of a scene point; `film` and `raster` are set unless the status is no_ray: the point has no
+/// chief ray, or its chief ray meets the film plane far outside the film.
 ///
 /// Accuracy: for vignetted and outside_film, 2e-5 of the film's radius, from a table of exact chief rays
 /// (tests/camera/projection_test.cpp).
 struct Projection {
-  ProjectionStatus status = ProjectionStatus::not_visible;
+  AimStatus status = AimStatus::no_ray;
   FilmPoint film{};
   Vec2<double> raster{0, 0};
 
-  explicit operator bool() const noexcept { return status == ProjectionStatus::converged; }
-};
-
-class Lens;
-
-/// Renderers whose camera frames are known.
-enum class Host : std::uint8_t { pbrt, mitsuba, cycles, arnold, appleseed };
-
-/// The origin of a host's camera frame.
-enum class FrameOrigin : std::uint8_t { film, front_vertex, entrance_pupil };
-
-/// Converts between the lens frame in mm and a host's camera frame in its unit of length.
-///
-/// A point (x, y, z) of the lens frame becomes (x, y, -z) for pbrt and Cycles (left-handed, +x right, +y up, view along
-/// +z), and (-x, y, -z) for Mitsuba (right-handed, +x left, +y up, view along +z). Arnold and appleseed look along -z,
-/// like the lens frame. Default units per mm: 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres
-/// (Arnold).
-class PETZVAL_API HostFrame {
- public:
-  /// @throws Error  if the origin is an entrance pupil at infinity, or units_per_mm is not from 1e-15 to 1e15
-  HostFrame(Host host, const Lens& lens, FrameOrigin origin);
-  HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm);
-
-  double units_per_mm() const noexcept { return units_per_mm_; }
-  Vec3<double> point_to_host(const Vec3<double>& lens_mm) const noexcept;
-  Vec3<double> point_to_lens(const Vec3<double>& host) const noexcept;
-  Vec3<double> direction_to_host(const Vec3<double>& lens) const noexcept;
-  Vec3<double> direction_to_lens(const Vec3<double>& host) const noexcept;
-  Ray<double> to_host(const Ray<double>& lens) const noexcept;
-  Ray<double> to_lens(const Ray<double>& host) const noexcept;
-
- private:
-  Vec3<double> signs_{1, 1, 1};
-  double origin_z_ = 0, units_per_mm_ = 1;
+  explicit operator bool() const noexcept { return status == AimStatus::converged; }
 };
 
 }  // namespace petzval

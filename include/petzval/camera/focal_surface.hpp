@@ -139,50 +139,12 @@ class PETZVAL_API FocalSurface {
 /// @param film    the film of the surface
 /// @param points  focus points over time
 /// @param moment  time and options, as in focus_targets()
-/// @param fades   one fade per point, from FadeFilter; empty: 1 for points valid at the moment, 0 for others
+/// @param fades   one fade per point, for points that leave the picture and come back; empty: 1 for points valid at the
+/// moment, 0 for others
 /// @throws Error  if focus_targets() does, if the number of fades differs from the number of points, or if a fade is
 ///                outside [0, 1]
 PETZVAL_API std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film,
                                                  std::span<const FocusPoint> points, const FocusTime& moment,
                                                  std::span<const double> fades = {});
-
-/// For each point: true if it is valid at the moment, has an image and lies on the film.
-///
-/// The input of FadeFilter::advance(), in which the renderer may clear hidden points.
-///
-/// @throws Error  if focus_targets() does
-PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& film,
-                                             std::span<const FocusPoint> points, const FocusTime& moment);
-
-/// Fades of points that leave the picture or are hidden, and come back; exponential in time, for any frame rate.
-///
-/// Experimental: the interface may change in any version.
-///
-///     FadeFilter fades(0.2);
-///     for (...) {
-///       moment.time += 1 / 24.0;
-///       fades.advance(1 / 24.0, points_in_view(lens, film, points, moment));
-///       const auto seen = focal_points(lens, film, points, moment, fades.fades());
-///       if (!seen.empty()) surface.emplace(lens, film, seen);  // else the last one stays
-///     }
-class PETZVAL_API FadeFilter {
- public:
-  /// Sets the time constant of the fades (s), after which 1 / e of a change remains; 0: no fading.
-  ///
-  /// @throws Error  if the time constant is negative or not finite
-  explicit FadeFilter(double time_constant_s);
-
-  /// Advances the fades by a time in which every point stays in view or out of view.
-  ///
-  /// A new point begins with 1 if it is in view, else with 0.
-  ///
-  /// @throws Error  if seconds is not 0 or more
-  void advance(double seconds, const std::vector<bool>& in_view);
-  const std::vector<double>& fades() const noexcept { return fades_; }
-
- private:
-  double time_constant_;
-  std::vector<double> fades_;
-};
 
 }  // namespace petzval

@@ -88,8 +88,7 @@ struct PETZVAL_API FocusEditorState {
   FocusServe serve = FocusServe::distance;
   double f_number = 0;  ///< f-number of the lens at infinity
   double focus_mm = 0;  ///< distance in focus on the axis, from the front vertex; may be infinite
-  /// "solved", or the reason why the points are not served: the name of a FocusStatus, AutofocusStatus or
-  /// TiltFitStatus.
+  /// "solved", or the reason why the points are not served: the name of a FocusStatus.
   std::string_view status = "solved";
   double time_s = 0;
   std::vector<FocusMark> targets = {};

@@ -13,20 +13,23 @@
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
+// Figures as SVG text. Equal input gives equal text.
+
 namespace petzval {
 
-/// Draws a scaled section of a lens through the axis as SVG text: light from left to right, +y up.
+/// Draws a scaled section of a lens through the axis: light from left to right, +y up.
 ///
 /// Glass is filled, darker for a higher index; mirrors are thick lines; central holes stay open. Two ticks mark the rim
 /// of the stop. They are dashed if the lens has no marked stop and the surface that limits the axial beam is used
 /// instead. A line shows the film. The rays of a field have one colour and cross its vignetted pupil from edge to edge,
 /// including the chief ray. Vignetted rays through the rim or the centre of the stop are thin and end at the surface
-/// that clips the ray. Surfaces without a rim are drawn up to the outermost ray. The output is deterministic.
+/// that clips the ray. Surfaces without a rim are drawn up to the outermost ray.
 ///
 /// @param lens        the lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
@@ -39,125 +42,115 @@ PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::s
                                       Meridian section = Meridian::y, std::size_t rays = 5,
                                       int first_surface_number = 0);
 
-/// Draws the vignetted pupil of each field at the primary wavelength as SVG text.
+/// Draws the vignetted pupil of each field at the primary wavelength.
 ///
 /// A cell shows the transmitting region of the pupil plane, its boundary with one colour per limiting surface, and the
 /// paraxial entrance pupil dashed. All cells have the same scale, x to the right and +y up. The area relative to the
 /// axis and the relative illumination are printed below. If the pupil is far from the paraxial pupil, the cell shows
-/// the pupil only and prints the distance. The output is deterministic.
+/// the pupil only and prints the distance.
 ///
-/// @param lens        the lens
-/// @param subject_z   subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param fields_rad  field angles (rad)
 /// @param first_surface_number  number of the first surface in the legend, as in layout_figure()
 /// @throws Error      if there are no fields; also under the conditions of scene_point()
 PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                          int first_surface_number = 0);
 
-/// Draws relative illumination against field angle at the primary wavelength, with cos^4 for comparison, as SVG text.
+/// Draws relative illumination against field angle at the primary wavelength, with cos^4 for comparison.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is not positive; also under the conditions of relative_illumination()
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
 
-/// Draws transmittance over wavelength as SVG text: a colour for each field. Fields from which no ray passes have no
+/// Draws transmittance over wavelength: a colour for each field. Fields from which no ray passes have no
 /// curve.
 ///
-/// @param lens       the lens, compiled for two or more wavelengths
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
-/// @param points     transmittance() of this lens
-/// @throws Error     if there are no points, less than two wavelengths, or not one point per wavelength and field
-PETZVAL_API std::string transmittance_figure(const Lens& lens, double subject_z,
-                                             std::span<const FieldTransmittance> points);
+/// @param lens, subject_z  as in layout_figure(); two or more compiled wavelengths
+/// @param fields_rad  the fields
+/// @param values      transmittance() of this lens at these fields
+/// @throws Error      if there are no fields, less than two wavelengths, or not one value per wavelength and field
+PETZVAL_API std::string transmittance_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                             const Grid<std::optional<double>>& values);
 
-/// Draws transmittance over the field as SVG text: a colour for each wavelength. Fields from which no ray passes
+/// Draws transmittance over the field: a colour for each wavelength. Fields from which no ray passes
 /// interrupt the curves.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
-/// @param points     transmittance() of this lens for ascending fields
-/// @throws Error     if there are less than two fields, or not one point per wavelength and field
+/// @param lens, subject_z, fields_rad, values  as in transmittance_figure(); fields ascend
+/// @throws Error  if there are less than two fields, or not one value per wavelength and field
 PETZVAL_API std::string transmittance_field_figure(const Lens& lens, double subject_z,
-                                                   std::span<const FieldTransmittance> points);
+                                                   std::span<const double> fields_rad,
+                                                   const Grid<std::optional<double>>& values);
 
-/// Draws ray fans as SVG text: a row for each field, tangential on the left, sagittal on the right, a colour for each
+/// Draws ray fans: a row for each field, tangential on the left, sagittal on the right, a colour for each
 /// wavelength. All cells have the same scale.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param fans       ray_fans() of this lens
-/// @throws Error     if there are no fans, or their number is not a multiple of the number of wavelengths
-PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
+/// @throws Error     if there are no fans, or fans of another number of wavelengths
+PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, const Grid<RayFan>& fans);
 
 /// Draws the wavefront errors of the same fans in waves.
 ///
 /// @param lens, subject_z, fans  as in fan_figure()
 /// @throws Error                 as fan_figure()
-PETZVAL_API std::string wavefront_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
+PETZVAL_API std::string wavefront_figure(const Lens& lens, double subject_z, const Grid<RayFan>& fans);
 
-/// Draws field_curvature() and distortion_percent() against field angle at the primary wavelength as SVG text.
+/// Draws field_curvature() and distortion_percent() against field angle at the primary wavelength.
 /// Distortion is relative to f tan(theta), or to f theta if the field exceeds 60 degrees.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is not positive; also under the conditions of aim()
 PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double field_rad);
 
-/// Draws geometric MTF over frequency as SVG text: a colour for each field, tangential solid, sagittal dashed, with the
+/// Draws geometric MTF over frequency: a colour for each field, tangential solid, sagittal dashed, with the
 /// diffraction limit of the axis at the primary wavelength.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param points     geometric_mtf() of this lens
 /// @throws Error     if there are no points
-PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
+PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points);
 
-/// Draws geometric MTF over the field as SVG text: a colour for each frequency, tangential solid, sagittal dashed.
+/// Draws geometric MTF over the field: a colour for each frequency, tangential solid, sagittal dashed.
 /// Fields from which no ray passes interrupt the curves.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param points     geometric_mtf() of several fields
 /// @throws Error     if there are less than two fields
-PETZVAL_API std::string mtf_field_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
+PETZVAL_API std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points);
 
-/// Draws geometric encircled energy as SVG text: the fraction of the rays over the radius, a colour for each field. A
+/// Draws geometric encircled energy: the fraction of the rays over the radius, a colour for each field. A
 /// line marks the Airy radius at the primary wavelength.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param points     encircled_energy() of this lens, with ascending fractions
 /// @throws Error     if there are no points
-PETZVAL_API std::string energy_figure(const Lens& lens, double subject_z, std::span<const EncircledEnergy> points);
+PETZVAL_API std::string energy_figure(const Lens& lens, double subject_z, const Grid<EncircledEnergy>& points);
 
-/// Draws colour as SVG text: longitudinal_aberration() of every wavelength over the height on the stop, and lateral
+/// Draws colour: longitudinal_aberration() of every wavelength over the height on the stop, and lateral
 /// colour of chromatic_aberration() over the field, unless there is one wavelength or the field is 0.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is negative; also under the conditions of aim() and chromatic_aberration()
 PETZVAL_API std::string colour_figure(const Lens& lens, double subject_z, double field_rad);
 
-/// Draws Seidel sums as SVG text: bars of S1 to S5 and of C1 and C2 for each surface, and their sums on the right.
+/// Draws Seidel sums: bars of S1 to S5 and of C1 and C2 for each surface, and their sums on the right.
 ///
-/// @param lens       the lens
-/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param sums       seidel_sums() of this lens
 /// @param first_surface_number  number of the first surface on the axis, as in layout_figure()
 /// @throws Error     if the sums have another number of surfaces than the lens
 PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums,
                                       int first_surface_number = 0);
 
-/// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
+/// Draws a spot diagram: one row per field, with a column for all wavelengths and one per wavelength.
 ///
 /// All cells have the same scale, shown by a bar; +y is up. The origin of a row is the centroid of all its rays, so
 /// that its cells show lateral colour. Below each cell, the RMS and largest radius about the centroid of its rays are
 /// printed. The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first
-/// 600 rays of a spot are drawn. The output is deterministic.
+/// 600 rays of a spot are drawn.
 ///
 /// @param lens                the lens
 /// @param spots               result of spot_diagram() for this lens
@@ -165,20 +158,20 @@ PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const 
 ///                            weights
 /// @throws Error              if there are no spots or a wrong number of spots, or if the weights are negative, all 0
 ///                            or of the wrong number
-PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
+PETZVAL_API std::string spot_figure(const Lens& lens, const Grid<Spot>& spots,
                                     std::span<const double> wavelength_weights = {});
 
-/// Draws spots on moved films as SVG text: one row per field, one column per film.
+/// Draws spots on moved films: one row per field, one column per film.
 ///
 /// All cells have the same scale, shown by a bar; +y is up. The origin of a cell is the centroid of its rays; their RMS
-/// radius about it is printed below. The first 200 rays of a spot are drawn. The output is deterministic.
+/// radius about it is printed below. The first 200 rays of a spot are drawn.
 ///
 /// @param lens                the lens
 /// @param spots               result of spot_diagram() for this lens
 /// @param film_shifts_mm      shifts of the film towards +z (mm), for example multiples of through_focus_step()
 /// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
 /// @throws Error              if there are no spots or no films; also under the conditions of through_focus()
-PETZVAL_API std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots,
+PETZVAL_API std::string through_focus_figure(const Lens& lens, const Grid<Spot>& spots,
                                              std::span<const double> film_shifts_mm,
                                              std::span<const double> wavelength_weights = {});
 
@@ -190,7 +183,7 @@ struct ParetoPoint {
   bool on_front = false;          ///< true if no other model is both faster and more accurate
 };
 
-/// Draws accuracy against cost of models as SVG text.
+/// Draws accuracy against cost of models.
 ///
 /// Plots largest and RMS error on the film over ns per ray on logarithmic axes. Models on the Pareto front are filled
 /// and joined by a line. Errors of 0 are drawn at the bottom.
@@ -202,15 +195,14 @@ struct ParetoPoint {
 PETZVAL_API std::string pareto_figure(std::string_view title, std::string_view remark,
                                       std::span<const ParetoPoint> points);
 
-/// Draws sharpness against film position as SVG text.
+/// Draws sharpness against film position.
 ///
 /// Plots the RMS spot radius of each field and of all fields together over the distance of the film from the paraxial
 /// focus. Lines mark the paraxial focus, the film, and the minima of the axial spot and of all fields; the numbers are
 /// printed below. RMS radii are about the centroid, over all compiled wavelengths and the area of the vignetted pupil.
-/// Their square is a parabola in the film position, by the slopes of the rays. The output is deterministic.
+/// Their square is a parabola in the film position, by the slopes of the rays.
 ///
-/// @param lens                the lens
-/// @param subject_z           subject plane (lens frame, mm); -inf at infinity
+/// @param lens, subject_z  as in layout_figure()
 /// @param fields_rad          field angles (rad)
 /// @param wavelength_weights  one weight per compiled wavelength; empty: equal weights
 /// @throws Error              if there are no fields, or the weights are negative, all 0 or of the wrong number; also
@@ -218,7 +210,7 @@ PETZVAL_API std::string pareto_figure(std::string_view title, std::string_view r
 PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                      std::span<const double> wavelength_weights = {});
 /// The same for the rays of spot_diagram(); the axis is traced if it is not among the fields.
-PETZVAL_API std::string focus_figure(const Lens& lens, std::span<const Spot> spots,
+PETZVAL_API std::string focus_figure(const Lens& lens, const Grid<Spot>& spots,
                                      std::span<const double> wavelength_weights = {});
 
 /// A film and the subject in focus at one time.
@@ -229,7 +221,7 @@ struct FocusPullFrame {
   double rms_mm = 0;            ///< RMS blur of the focus points; NaN if no point was used and the film did not move
 };
 
-/// Draws focus over time as SVG text.
+/// Draws focus over time.
 ///
 /// Plots the subject distance on a scale of 1/distance that includes infinity, the film position, the RMS blur of the
 /// focus points, and tilt and swing if the film has any. Vertical lines mark the keys. Curves are grey where the film
@@ -245,12 +237,6 @@ PETZVAL_API std::string focus_pull_figure(std::string_view title, std::string_vi
                                           std::span<const FocusPullFrame> frames, std::span<const double> key_times,
                                           std::string_view distance_from = "front vertex");
 
-/// A focus point in the figure; unused points are drawn hollow.
-struct TiltFigurePoint {
-  ScenePoint point;
-  bool used = true;
-};
-
 /// A film before and after a tilt, with its focus points.
 struct TiltView {
   std::string_view title;       ///< name of the lens
@@ -260,11 +246,11 @@ struct TiltView {
   Film before, after;           ///< z_mm must be set; `before` is upright
   /// The plane of focus, if it differs from the plane of `lens`, as for films fitted with exact rays.
   std::optional<FocusPlane> focus = {};
-  double blur_mm = 0.03;  ///< largest blur that counts as sharp, > 0
-  std::span<const TiltFigurePoint> points;
+  double blur_mm = 0.03;                ///< largest blur that counts as sharp, > 0
+  std::span<const FocusTarget> points;  ///< focus points; those of weight 0 are drawn hollow
 };
 
-/// Draws film, lens and plane of focus from the side as SVG text.
+/// Draws film, lens and plane of focus from the side.
 ///
 /// The section contains the axis and the normal of the plane of focus; the hinge line and the Scheimpflug line appear
 /// as points. The scene is drawn above, lens and film below, each to scale. Focus points are projected along the hinge
@@ -273,24 +259,22 @@ struct TiltView {
 /// @throws Error if a film is not finite or has no position or size, or `blur_mm` is not positive
 PETZVAL_API std::string tilt_figure(const TiltView& view);
 
-/// A focal surface in front of its lens.
-struct FocalSurfaceView {
-  std::string_view title;   ///< name of the lens
-  std::string_view remark;  ///< a line about the conditions
-  IdealLens lens;           ///< with the entrance pupil of the surface
-  Film film;                ///< z_mm must be set
-  const FocalSurface& surface;
-  std::span<const FocalPoint> points;
-};
-
-/// Draws film, lens and focal surface from the side and from above as SVG text.
+/// Draws film, lens and focal surface from the side and from above.
 ///
 /// Both sections contain the axis and show the edges of the field. They are to scale, unless lens and film would be too
 /// small to see. Focus points are projected into both and numbered from 1, at their true distances; points with a blur
 /// are hollow. Points at infinity and points that fix only the extent are left out. The panels extend a quarter beyond
 /// the farthest sharp point at a finite distance.
 ///
-/// @throws Error if the film has no position or size
-PETZVAL_API std::string focal_surface_figure(const FocalSurfaceView& view);
+/// @param title    name of the lens
+/// @param remark   a line about the conditions
+/// @param lens     the lens with the entrance pupil of the surface
+/// @param film     the film; z_mm must be set
+/// @param surface  the focal surface
+/// @param points   its points
+/// @throws Error   if the film has no position or size
+PETZVAL_API std::string focal_surface_figure(std::string_view title, std::string_view remark, const IdealLens& lens,
+                                             const Film& film, const FocalSurface& surface,
+                                             std::span<const FocalPoint> points);
 
 }  // namespace petzval

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "petzval/core/config.hpp"
@@ -28,28 +26,16 @@ struct TiltOptions {
 };
 
 /// The result of fit_tilt().
-enum class TiltFitStatus : std::uint8_t {
-  solved,        ///< the targets determine a plane
-  least_tilt,    ///< the targets do not determine a plane (see `rank`): the best plane with the least tilt
-  limited,       ///< the tilt is at its limit: the best film within the limit
-  no_targets,    ///< no target can be used: the film is unchanged
-  unreachable,   ///< the fitted film would touch the lens: the film is unchanged
-  not_converged  ///< the film is unchanged
-};
-
-/// "solved", "least_tilt", ...
-PETZVAL_API std::string_view name(TiltFitStatus status) noexcept;
-
-/// The result of fit_tilt().
 struct TiltFit {
-  TiltFitStatus status = TiltFitStatus::no_targets;
+  /// solved, least_tilt or limited; or no_targets, unreachable or not_converged: the film is unchanged.
+  FocusStatus status = FocusStatus::no_targets;
   PlaneRank rank = PlaneRank::none;
   Film film;                        ///< shifted to keep the centre of the image; z_mm is set
   std::optional<FocusPlane> focus;  ///< nullopt if the plane of focus is at infinity
   std::vector<TargetBlur> blurs;    ///< one per target, used or not
   double rms_mm = 0;                ///< weighted RMS of blur minus target blur, over the targets used
 
-  explicit operator bool() const noexcept { return status <= TiltFitStatus::limited; }
+  explicit operator bool() const noexcept { return status <= FocusStatus::limited; }
 };
 
 /// Tilts and moves a film so that each focus target comes as close as possible to its target blur.

@@ -114,19 +114,10 @@ struct FocusTime {
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
                                                    const FocusTime& moment);
 
-/// The result of autofocus().
-enum class AutofocusStatus : std::uint8_t {
-  solved,
-  no_targets,   ///< no target is usable
-  unreachable,  ///< the solution does not lie behind the lens
-};
-
-/// "solved", "no_targets", "unreachable".
-PETZVAL_API std::string_view name(AutofocusStatus status) noexcept;
-
 /// The upright film that fits a set of focus targets best.
 struct Autofocus {
-  AutofocusStatus status = AutofocusStatus::no_targets;
+  /// solved, no_targets, or unreachable: the solution does not lie behind the lens.
+  FocusStatus status = FocusStatus::no_targets;
   Film film;                      ///< the solution, with z_mm set; the given film if there is no solution
   std::vector<TargetBlur> blurs;  ///< for each target, its blur on this film
   double rms_mm = 0;              ///< weighted RMS difference of blur and requested blur; 0 if no target was used
@@ -136,7 +127,7 @@ struct Autofocus {
   double breathing = std::numeric_limits<double>::quiet_NaN();
   double magnification_change = std::numeric_limits<double>::quiet_NaN();
 
-  explicit operator bool() const noexcept { return status == AutofocusStatus::solved; }
+  explicit operator bool() const noexcept { return status == FocusStatus::solved; }
 };
 
 /// Finds the film with the least weighted squares of blur minus requested blur, for an ideal lens.

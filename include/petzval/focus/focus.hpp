@@ -30,13 +30,17 @@ enum class DistanceOrigin : std::uint8_t {
   front_principal,  ///< paraxial; of the thick lens, even for FocusCriterion::thin
 };
 
-/// The result of a focus computation, or the reason for its failure.
+/// The result of a focus computation, of autofocus() or of fit_tilt(), or the reason for its failure.
 enum class FocusStatus : std::uint8_t {
   solved,
-  unreachable,  ///< no real image: the subject is too near, or the film is too close to the lens
-  no_rays,      ///< exact criteria: for some field, no ray passes the lens
-  afocal,       ///< the lens has no focal length
-  too_blurred,  ///< depth of field, hyperfocal distance: even the sharpest subject exceeds the blur
+  least_tilt,     ///< fit_tilt(): the targets do not determine a plane (TiltFit::rank); the best plane of least tilt
+  limited,        ///< fit_tilt(): the tilt is at its limit; the best film within the limit
+  unreachable,    ///< no real image: the subject is too near, or the film is too close to the lens or would touch it
+  no_rays,        ///< exact criteria: for some field, no ray passes the lens
+  afocal,         ///< the lens has no focal length
+  too_blurred,    ///< depth of field, hyperfocal distance: even the sharpest subject exceeds the blur
+  no_targets,     ///< autofocus(), fit_tilt(): no target is usable
+  not_converged,  ///< fit_tilt()
 };
 
 /// The name of a value: "thin", ...; "front_vertex", ...; "solved", ...

@@ -49,12 +49,6 @@ struct Rgb8Image {
   std::vector<std::uint8_t> pixels;
 };
 
-/// One channel of an EXR part: width x height values, rows from the top.
-struct ExrChannel {
-  std::string name;
-  std::vector<float> values;
-};
-
 /// One image of an EXR file: channels of equal size, and attributes.
 ///
 /// Numbers are written as attributes of type double, except for the standard float attributes of OpenEXR: aperture,
@@ -63,7 +57,8 @@ struct ExrPart {
   std::string name{};  ///< may be empty if the file has a single part
   int width = 0;
   int height = 0;
-  std::vector<ExrChannel> channels{};          ///< sorted by name after reading
+  /// width x height values by the name of the channel, rows from the top.
+  std::map<std::string, std::vector<float>> channels{};
   std::map<std::string, std::string> texts{};  ///< attributes of type string
   std::map<std::string, double> numbers{};     ///< attributes of type double or float; also int when reading
   std::map<std::string, Vec2<float>> pairs{};  ///< attributes of type v2f
@@ -77,8 +72,8 @@ struct ExrPart {
 /// The display window starts at (0, 0) and is the smallest window around all parts without their margins.
 ///
 /// @throws Error if there is no part, a part has no channels or no pixels outside its margins, a channel differs in
-///               size from its part, names are empty or duplicate, an attribute name is reserved by EXR, or the file
-///               cannot be written
+///               size from its part, names are empty, parts have equal names, an attribute name is reserved by EXR, or
+///               the file cannot be written
 PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
 
 /// Reads all parts of an EXR file with scan lines or tiles.

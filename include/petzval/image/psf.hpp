@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/analysis/psf.hpp"
@@ -52,16 +53,10 @@ PETZVAL_API std::string psf_part_name(const PsfSetPoint& point);
 /// (chief_ray or centroid), `diffraction`, and `checksum` over all channels and the other attributes.
 PETZVAL_API ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point);
 
-/// A kernel of a PSF set with its point, as read from an EXR file.
-struct PsfPart {
-  PsfSetPoint point;
-  PsfKernel kernel;
-};
-
-/// Converts a part back to its kernel, bit for bit.
+/// Converts a part back to its point and kernel, bit for bit.
 ///
 /// @throws Error with the name of the part, if data are missing or have changed
-PETZVAL_API PsfPart from_exr_part(const ExrPart& part);
+PETZVAL_API std::pair<PsfSetPoint, PsfKernel> from_exr_part(const ExrPart& part);
 
 /// Reads a PSF set from an EXR file.
 ///

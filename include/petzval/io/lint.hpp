@@ -74,22 +74,17 @@ PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const Gl
 ///              section
 PETZVAL_API std::vector<std::optional<double>> edge_thicknesses(const Lens& lens);
 
-/// A repaired prescription and the list of changes.
-struct RepairedPrescription {
-  Prescription prescription;
-  std::vector<ImportWarning> changes;  ///< command: the kind of the finding
-};
-
 /// Repairs the findings of lint() that have an unambiguous solution.
 ///
 /// In this order: `units` and `apertures` are scaled by the factor found, `several_stops` keeps the first stop, and
 /// `image_distance` moves the film to the paraxial image. A change that would make the lens invalid is not made. If the
 /// prescription has several configurations, only the stops are repaired.
 ///
-/// @param prescription  the lens
+/// @param prescription  the lens to repair
 /// @param glasses       as in CompileOptions
+/// @return              the changes; command: the kind of the finding
 /// @throws Error        under the conditions of lint()
-PETZVAL_API RepairedPrescription repair(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+PETZVAL_API std::vector<ImportWarning> repair(Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 /// Checks the film of a camera against the image circle of its lens, and the shape of its pixels.
 ///

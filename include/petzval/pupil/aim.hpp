@@ -33,14 +33,15 @@ struct FieldPoint {
 ///                misses
 PETZVAL_API ScenePoint scene_point(const Lens& lens, const FieldPoint& point);
 
-/// Result of the search for a ray.
+/// Result of the search for a ray, or for the film point of a chief ray.
 enum class AimStatus : std::uint8_t {
-  converged,  ///< the ray passes the target on the stop and the whole lens
-  vignetted,  ///< the ray passes the target on the stop, but is blocked by a surface
-  no_ray,     ///< no ray from the scene point reaches the target on the stop
+  converged,     ///< the ray passes the target on the stop and the whole lens
+  vignetted,     ///< the ray passes the target on the stop, but is blocked by a surface
+  outside_film,  ///< cameras: the chief ray meets the film plane outside the film
+  no_ray,        ///< no ray from the scene point reaches the target on the stop, or the film plane
 };
 
-/// "converged", "vignetted" or "no_ray".
+/// "converged", "vignetted", "outside_film" or "no_ray".
 PETZVAL_API std::string_view name(AimStatus status) noexcept;
 
 /// A ray from a scene point to a target on the stop, traced through the lens unless the status is no_ray.
