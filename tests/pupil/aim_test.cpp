@@ -7,14 +7,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../report.hpp"
-#include "core/text.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -227,18 +225,6 @@ TEST(Aim, ReportsFieldsWithoutARay) {
   EXPECT_FALSE(beyond);
   EXPECT_EQ(beyond.status, AimStatus::no_ray);
   EXPECT_EQ(name(beyond.status), "no_ray");
-}
-
-TEST(Aim, UsesTheLimitingApertureWithoutAMarkedStop) {
-  Prescription p;
-  p.name = "no stop";
-  p.surfaces = {{.radius = 50, .thickness = 6, .medium = {.nd = 1.5}, .semi_diameter = 9},
-                {.radius = -50, .thickness = 45, .semi_diameter = 12}};
-  const Lens lens = compile(p);
-  ASSERT_EQ(pupils(lens).stop, 0u);
-  const AimedRay rim = aim(lens, {radians(5), -infinity}, {0, -1});
-  ASSERT_TRUE(rim);
-  EXPECT_LE(miss(lens, rim.ray, {0, -1}), 1e-12);
 }
 
 TEST(Aim, RefusesMissingWavelengthsAndStops) {

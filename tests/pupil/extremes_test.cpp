@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -53,6 +52,8 @@ TEST(Extremes, EdgeRaysPassAndTheNextAreLost) {
           ASSERT_FALSE(next.transmitted());
           EXPECT_EQ(next.surface, span.to.surface);
           EXPECT_EQ(next.fate, span.to.next_fate);
+          ASSERT_TRUE(span.from_radius == 0 ||
+                      fate(lens, boundary, span, span.from_radius - 1e-12) != RayFate::transmitted);
           ++edges;
         }
       }

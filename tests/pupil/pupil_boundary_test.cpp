@@ -37,44 +37,6 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.len
 
 class PupilBoundaryTest : public ::testing::TestWithParam<Case> {};
 
-TEST_P(PupilBoundaryTest, LiesBetweenPassingAndLostRays) {
-  const Lens lens = data_lens(GetParam().lens);
-  const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity}, 0, 64);
-  ASSERT_FALSE(boundary.empty());
-  const auto fate = [&](std::size_t direction, double radius) {
-    const Vec2<double> p = boundary.at(direction, radius);
-    return trace(lens, boundary.plane.ray(p.x, p.y));
-  };
-  for (const PupilSpan& span : boundary.spans) {
-    ASSERT_TRUE(fate(span.direction, span.from_radius).transmitted());
-    ASSERT_TRUE(fate(span.direction, span.to_radius).transmitted());
-    ASSERT_TRUE(fate(span.direction, (span.from_radius + span.to_radius) / 2).transmitted());
-    const auto outside = fate(span.direction, span.to_radius + 2e-13);
-    ASSERT_FALSE(outside.transmitted());
-    EXPECT_EQ(span.to.surface, outside.surface);
-    EXPECT_EQ(span.to.next_fate, outside.fate);
-    if (span.from_radius > 0) {
-      ASSERT_FALSE(fate(span.direction, span.from_radius - 2e-13).transmitted());
-    }
-  }
-}
-
-TEST_P(PupilBoundaryTest, AreaEqualsAGridOfRays) {
-  const Lens lens = data_lens(GetParam().lens);
-  const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity});
-  constexpr int nodes = 300;
-  const double half_x = 1.25 * boundary.half_axes[0], half_y = 1.25 * boundary.half_axes[1];
-  int passed = 0;
-  for (int j = 0; j < nodes; ++j) {
-    for (int i = 0; i < nodes; ++i) {
-      const double x = boundary.middle[0] + half_x * ((2 * i + 1.0) / nodes - 1);
-      const double y = boundary.middle[1] + half_y * ((2 * j + 1.0) / nodes - 1);
-      passed += trace(lens, boundary.plane.ray(x, y)).transmitted();
-    }
-  }
-  EXPECT_NEAR(boundary.area() / (4 * half_x * half_y / nodes / nodes * passed), 1, 3e-3);
-}
-
 TEST_P(PupilBoundaryTest, AreaConvergesWithDirections) {
   const Lens lens = data_lens(GetParam().lens);
   const FieldPoint point{radians(GetParam().field_deg), -infinity};
@@ -136,26 +98,6 @@ TEST(PupilBoundary, OneDirectionSufficesOnTheAxis) {
     const PupilBoundary one = pupil_boundary(lens, {0, -infinity}, 0, 1), many = pupil_boundary(lens, {0, -infinity});
     EXPECT_NEAR(one.area() / many.area(), 1, 1e-13) << id;
   }
-}
-
-TEST(PupilBoundary, NamesTheLimitingRim) {
-  // On the axis the rim of the stop limits this lens if the subject is distant, the rear group if it is near.
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const auto limiting = [&](double z) { return pupil_boundary(lens, {0, z}, 0, 1).spans.front().to.surface; };
-  const auto clips = [&](double z) {
-    const PupilBoundary boundary = pupil_boundary(lens, {0, z}, 0, 1);
-    const Vec2<double> p = boundary.at(0, boundary.spans.front().to_radius * (1 + 1e-9));
-    return trace(lens, boundary.plane.ray(p.x, p.y)).surface;
-  };
-  for (const double z : {-infinity, -1000.0, -200.0}) EXPECT_EQ(limiting(z), clips(z)) << z;
-}
-
-TEST(PupilBoundary, IsEmptyIfNoRayPasses) {
-  const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilBoundary boundary = pupil_boundary(lens, {radians(60), -infinity});
-  EXPECT_TRUE(boundary.empty());
-  EXPECT_EQ(boundary.area(), 0);
-  EXPECT_TRUE(pupil_boundary(front_stop_lens(0), {0, -infinity}).empty());
 }
 
 TEST(PupilBoundary, FindsTheStopOfAFarStoppedDownLens) {

@@ -3,11 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
@@ -23,39 +20,12 @@ using testing::expect_error;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(TraceBundle, MostRaysPass) {
-  for (const auto& [id, field_deg] : {std::pair{"double_gauss_100mm_f1.35", 0.0},
-                                      {"double_gauss_100mm_f1.35", 21.0},
-                                      {"fisheye_6.3mm_f2.8", 110.0},
-                                      {"catadioptric_mangin_1000mm_f7.5", 1.0}}) {
-    const Lens lens = data_lens(id);
-    const PupilBoundary boundary = pupil_boundary(lens, {radians(field_deg), -infinity});
-    const RayBundle hits = trace_bundle(lens, PupilSampler(boundary), 1 << 16);
-    EXPECT_GE(hits.x.size(), 0.96 * hits.sent) << id;
-    EXPECT_NEAR(hits.transmitted_area() / boundary.area(), 1, 1e-3) << id;
-  }
-}
-
 TEST(TraceBundle, IsEmptyForAnEmptyPupil) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayBundle hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, {radians(60), -infinity})), 1000);
   EXPECT_EQ(hits.sent, 1000u);
   EXPECT_TRUE(hits.x.empty());
   EXPECT_EQ(hits.transmitted_area(), 0);
-}
-
-TEST(TraceBundle, IndependentOfThreads) {
-  const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilSampler pupil(pupil_boundary(lens, {radians(10), -1500}));
-  const RayBundle one = trace_bundle(lens, pupil, 50000, 3, 1);
-  EXPECT_GT(one.x.size(), 20000u);
-  for (const int threads : {2, 3, 7, 64}) {
-    const RayBundle many = trace_bundle(lens, pupil, 50000, 3, threads);
-    EXPECT_EQ(many.x, one.x) << threads;
-    EXPECT_EQ(many.y, one.y) << threads;
-  }
-  EXPECT_NE(trace_bundle(lens, pupil, 50000, 4, 1).x, one.x);
-  expect_error([&] { trace_bundle(lens, pupil, 10, 0, 0); }, {"threads", 0});
 }
 
 TEST(TraceBundle, RefusesPupilsOfOtherWavelengths) {
@@ -65,14 +35,6 @@ TEST(TraceBundle, RefusesPupilsOfOtherWavelengths) {
   const PupilSampler pupil(pupil_boundary(three, {.z = -1500}, 2));
   EXPECT_FALSE(trace_bundle(three, pupil, 100).empty());
   expect_error([&] { trace_bundle(one, pupil, 100); }, {one.name(), "wavelength", 2});
-}
-
-TEST(TraceBundle, FewerSamplesGiveThePrefix) {
-  const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilSampler pupil(pupil_boundary(lens, {0, -1500}));
-  const RayBundle few = trace_bundle(lens, pupil, 5000), many = trace_bundle(lens, pupil, 9000);
-  ASSERT_LT(few.x.size(), many.x.size());
-  EXPECT_TRUE(std::equal(few.x.begin(), few.x.end(), many.x.begin()));
 }
 
 TEST(TraceBundle, HitsEqualSingleRays) {

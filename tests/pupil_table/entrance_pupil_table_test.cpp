@@ -173,41 +173,6 @@ TEST(EntrancePupilTable, DensityIntegratesToOne) {
   }
 }
 
-TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
-  for (const char* id : {"double_gauss_100mm_f2_28deg", "tessar_100mm_f2.8", "fisheye_8mm_f2.8"}) {
-    const Seen s = seen(id);
-    const double pupil_z = pupils(s.lens).entrance.z;
-    for (const double degrees : {0.0, 7.0, 12.0}) {
-      for (const double z : {-1e9, -5000.0, -800.0}) {
-        SCOPED_TRACE(id + std::string(" at ") + std::to_string(degrees) + " degrees, z " + std::to_string(z));
-        const double tangent = std::tan(degrees * pi / 180);
-        const Vec3<double> point{0, tangent * (pupil_z - z), z};
-        const auto boundary = pupil_boundary(s.lens, {degrees * pi / 180, z}, 0, 512);
-        // Sum of the solid angles of the triangles between centre and boundary.
-        double wanted = 0;
-        for (std::size_t k = 0; k < boundary.spans.size(); ++k) {
-          const auto &a = boundary.spans[k].to, &b = boundary.spans[(k + 1) % boundary.spans.size()].to;
-          const Vec2<double> middle = boundary.middle;
-          const double twice = std::abs((a.x - middle.x) * (b.y - middle.y) - (a.y - middle.y) * (b.x - middle.x));
-          const Vec3<double> to = Vec3<double>{(a.x + b.x + middle.x) / 3, (a.y + b.y + middle.y) / 3, pupil_z} - point;
-          wanted += twice / 2 * to.z / std::pow(glm::length(to), 3);
-        }
-        constexpr std::uint32_t draws = 1 << 14;
-        double found = 0;
-        for (std::uint32_t i = 0; i < draws; ++i) {
-          const auto uv = owen_sobol(i, 6);
-          const double u = uv.x, v = uv.y;
-          const EntranceSample sample = s.table.sample(point, u, v);
-          ASSERT_GT(sample.pdf, 0);
-          if (trace(s.lens, Ray<double>{sample.origin, sample.direction}).transmitted())
-            found += 1 / sample.pdf / draws;
-        }
-        EXPECT_NEAR(found / wanted, 1, 2e-3);
-      }
-    }
-  }
-}
-
 TEST(EntrancePupilTable, SpreadSamplesAreUniform) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   const Vec3<double> point{30, 250, -1500};

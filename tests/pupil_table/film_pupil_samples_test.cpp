@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -80,18 +79,6 @@ TEST(FilmPupilTable, IsContinuousAcrossTheTable) {
       EXPECT_NEAR(at(before).y, at(next).y, 1e-10);
       EXPECT_NEAR(at(before).area, at(next).area, 1e-9);
     }
-  }
-}
-
-TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 40);
-  const PupilSample axis = table.sample({0, 0}, 0.3, 0.8);
-  for (int i = 0; i < 32; ++i) {
-    const double azimuth = 2 * std::numbers::pi * i / 32;
-    const PupilSample s = table.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
-    // A polygon of 64 corners is a circle within 1 - cos(pi / 64).
-    EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
   }
 }
 

@@ -98,80 +98,7 @@ TEST(FilmPupilTable, ClearanceIsTheDistanceToTheEdge) {
   }
 }
 
-TEST(FilmPupilTable, BatchClearancesEqualSingleClearances) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
-                                FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
-                                FilmPupilTable::enclosing(data_lens("anamorphic_60mm_2x"), 20),
-                                FilmPupilTable::enclosing(with_iris(lens, {.blades = 5}), 20),
-                                FilmPupilTable::of_iris({50, 0}, {}, std::array{PupilImage{.radius = {10, 10}}}, 20)};
-  for (const FilmPupilTable& table : tables) {
-    const double reach = 1.5 * std::sqrt(table.area({0, 0}));
-    std::mt19937_64 random(5);
-    std::uniform_real_distribution<double> unit(-1, 1);
-    std::array<std::vector<double>, 4> at;
-    // Compares points on radial lines, as in the search for pupils of tilted films, and points anywhere inside and
-    // outside the film.
-    for (int line = 0; line < 100; ++line) {
-      const double film_x = 22 * unit(random), film_y = 22 * unit(random), x = unit(random), y = unit(random);
-      for (int i = 0; i < 30; ++i) {
-        const double way = reach * (line % 2 ? unit(random) : i / 30.0);
-        at[0].push_back(film_x), at[1].push_back(film_y), at[2].push_back(way * x), at[3].push_back(way * y);
-      }
-    }
-    std::vector<double> together(at[0].size());
-    table.clearances(together.size(), {at[0].data(), at[1].data(), at[2].data(), at[3].data()}, {}, together.data());
-    int within = 0;
-    for (std::size_t i = 0; i < together.size(); ++i) {
-      EXPECT_NEAR(together[i], clearance(table, {at[0][i], at[1][i]}, at[2][i], at[3][i]), 1e-12);
-      within += together[i] >= 0;
-    }
-    EXPECT_GT(within, 300);
-    EXPECT_LT(within, 2700);
-  }
-}
-
-// The pupils of a tilted film contain every line of the table that meets the film, and few other lines. The pupil of a
-// virtual film point consists of the lines through it that belong to the pupil of their upright film point.
-TEST(FilmPupilTable, TiltedFilmPupilsAreCovered) {
-  for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
-                                   std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
-    const Lens lens = data_lens(id);
-    const double steep = std::tan(radians(10)) / -two_planes(lens).depth();
-    const FilmTilt tilt{.slope_x = 0.8 * steep,
-                        .slope_y = -0.6 * steep,
-                        .min_excess = -0.7 * radius * std::abs(steep),
-                        .max_excess = 0.7 * radius * std::abs(steep),
-                        .radius = radius};
-    for (const FilmPupilTable& upright :
-         {FilmPupilTable::enclosing(lens, 1.5 * radius), FilmPupilTable::equal_area(lens, 1.5 * radius)}) {
-      const FilmPupilTable table = upright.for_tilted_film(tilt);
-      EXPECT_EQ(table.film_radius(), radius);
-      std::mt19937_64 random(2);
-      std::uniform_real_distribution<double> unit(0, 1);
-      double inside = 0, sampled = 0;
-      for (int i = 0; i < 2000; ++i) {
-        const double r = radius * std::sqrt(unit(random)), azimuth = 2 * std::numbers::pi * unit(random);
-        const FilmPoint virtual_point{r * std::sin(azimuth), r * std::cos(azimuth)};
-        const double nearer = tilt.slope_x * virtual_point.x + tilt.slope_y * virtual_point.y;
-        if (nearer < tilt.min_excess || nearer > tilt.max_excess || table.area(virtual_point) == 0) continue;
-        const auto passes = [&](double x, double y) {
-          return upright.contains({virtual_point.x - nearer * x, virtual_point.y - nearer * y}, x, y);
-        };
-        for (int k = 0; k < 20; ++k) {
-          const PupilSample s = table.sample(virtual_point, unit(random), unit(random)),
-                            edge = table.sample(virtual_point, unit(random), 1);
-          sampled += 1;
-          inside += passes(s.x, s.y);
-          const Vec2<double> middle = table.middle(virtual_point);
-          const double out = 1 + 0.1 * unit(random) + 1e-9;
-          EXPECT_FALSE(passes(middle.x + out * (edge.x - middle.x), middle.y + out * (edge.y - middle.y)))
-              << id << " at " << virtual_point.x;
-        }
-      }
-      EXPECT_GT(inside / sampled, 0.95) << id;
-    }
-  }
+TEST(FilmPupilTable, RefusesInvalidTilts) {
   const FilmPupilTable table = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
   expect_error([&] { (void)table.for_tilted_film({.radius = -1}); }, {"tilted film", "radius", -1});
   expect_error([&] { (void)table.for_tilted_film({.radius = std::nan("")}); }, {"tilted film", "radius", "nan"});
@@ -245,17 +172,6 @@ TEST(FilmPupilTable, SolidAngleEqualsIntegral) {
     EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-3);
     EXPECT_NEAR(other.projected_solid_angle(film) / table.projected_solid_angle(film), 1, 1e-3);
     EXPECT_GE(std::abs(other.middle(film).y - table.middle(film).y), 1e-3 * std::abs(film.y));
-  }
-}
-
-TEST(FilmPupilTable, SolidAngleOfARing) {
-  for (const char* id :
-       {"catadioptric_mangin_1000mm_f7.5", "catadioptric_maksutov_1280mm_f14.4", "mirror_newton_200mm_f8"}) {
-    const Lens lens = data_lens(id);
-    const FilmPupilTable table = FilmPupilTable::equal_area(lens, 7.5);
-    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -4}}) {
-      EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-4) << id;
-    }
   }
 }
 
@@ -354,36 +270,6 @@ TEST(FilmPupilTable, RefusesInvalidInput) {
   expect_error([&] { (void)table.with_discs(lists); }, {"pupil table", "wavelength 0", "disc"});
   lists.assign(3, {{0, 5}});
   expect_error([&] { (void)table.with_discs(lists); }, {"pupil table", "discs", "wavelengths", 3, 1});
-}
-
-TEST(FilmPupilTable, ObscurationsAreExcluded) {
-  for (const FilmPupilTable& table : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
-                                      FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
-    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
-      const Vec2<double> p = table.middle(film);
-      EXPECT_FALSE(table.contains(film, p.x, p.y));
-      EXPECT_FALSE(table.contains(film, p.x + 0.1, p.y));
-    }
-  }
-}
-
-TEST(FilmPupilTable, EachWavelengthHasItsTable) {
-  const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
-  const std::vector<double> nm{450, 650};
-  const Lens lens = compile(p, nm, {.glasses = nullptr, .missing_glass = MissingGlass::abbe});
-  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
-  ASSERT_EQ(table.wavelengths(), 2u);
-  const std::vector<std::uint16_t> each{1, 0, 2, 1, 0, 1, 0, 1};
-  std::vector<double> x(8, 7), y(8, -11), u(8, 0.37), v(8, 0.81), px(8), py(8), areas(8);
-  table.sample<double>(8, x.data(), y.data(), u.data(), v.data(), {.each = each.data()}, px.data(), py.data(),
-                       areas.data());
-  for (std::size_t i = 0; i < 8; ++i) {
-    const PupilSample s = table.sample({7, -11}, 0.37, 0.81, each[i]);
-    EXPECT_NEAR(px[i], s.x, 1e-12);
-    EXPECT_NEAR(py[i], s.y, 1e-12);
-    EXPECT_EQ(areas[i] == 0, each[i] == 2);
-  }
-  EXPECT_NE(table.area({7, -11}, 0), table.area({7, -11}, 1));
 }
 
 TEST(FilmPupilTable, IsEmptyAtOtherWavelengths) {
