@@ -3,20 +3,16 @@
 // post-process of a single image. Uses all threads of the processor; times are minima of interleaved rounds; the
 // numbers of a table come from one run.
 //
-//   build/tests/bench/blur_bench [--full] [--pictures FOLDER]
+//   build/tests/bench/blur_bench [--full]
 //
 // 400 x 300 pixels, one round, 100 mm; --full: 800 x 600, three rounds, and variations of layers, rays and lenses.
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "../blur/reference_gather.hpp"
@@ -40,7 +36,6 @@ constexpr std::array scene_names{"town", "statues", "knot", "leaves"};
 struct Settings {
   int columns = 400, rows = 300, rounds = 1, threads = petzval::processor_threads();
   bool full = false;
-  std::optional<std::filesystem::path> pictures;
 };
 
 /// Duration of work in milliseconds.
@@ -113,10 +108,6 @@ struct LoadedScene {
   }
 };
 
-void write(const Settings& settings, const RgbImage& image, const std::string& name) {
-  if (settings.pictures) petzval::write_png(petzval::to_srgb8(image), *settings.pictures / (name + ".png"));
-}
-
 /// Four layers, every method of gathering, the reference and the single image.
 void report_thin(const Settings& settings, const LoadedScene& scene, double diameter_mm) {
   const View view = scene.through(settings, thin_lens(diameter_mm));
@@ -150,10 +141,6 @@ void report_thin(const Settings& settings, const LoadedScene& scene, double diam
               single, 100 * missed);
   std::printf("%.1fx | %.1fx |\n", by_pixels / gather, unbounded / gather);
   std::fflush(stdout);
-  const std::string name = scene.name + "_" + std::to_string(static_cast<int>(diameter_mm)) + "mm";
-  write(settings, ours, name + "_layers");
-  write(settings, post, name + "_single");
-  write(settings, reference, name + "_reference");
 }
 
 void report_layers(const Settings& settings, const LoadedScene& scene) {
@@ -283,10 +270,9 @@ void report_scalar(const Settings& settings, const LoadedScene& scene) {
 
 int run(std::vector<char*> arguments) {
   Settings settings;
-  if (const auto folder = take_option(arguments, "--pictures")) settings.pictures = *folder;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     if (std::string(arguments[i]) != "--full") {
-      throw petzval::Error(std::string(arguments[0]) + ": " + arguments[i] + "; must be --full or --pictures");
+      throw petzval::Error(std::string(arguments[0]) + ": " + arguments[i] + "; must be --full");
     }
     settings.full = true, settings.columns = 800, settings.rows = 600, settings.rounds = 3;
   }

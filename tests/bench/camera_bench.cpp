@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a camera ray on one thread: pupil sample, ray and weight for every model of a lens. Measures batches of 4096
-// samples, single samples, tilted films, connections, bokeh controls, transmission and focal surfaces, and the set-up
-// time of cameras of all lenses.
+// samples, single samples, tilted films, connections and bokeh controls, and the set-up time of cameras of all lenses.
 //
-//   camera_bench [--json FILE] [options of Google Benchmark]
+//   camera_bench [options of Google Benchmark]
 //
 // A useful ray reaches the scene; lost samples count in the time. The textbook tracer is timed in the same run on the
 // ray mix of trace_bench. Samples cover a 3:2 frame at full aperture.
@@ -17,21 +16,16 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "../declared_radius.hpp"
 #include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/io/json.hpp"
-#include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
@@ -185,21 +179,6 @@ struct Bench {
   }
 };
 
-/// Sixteen points spread over the film.
-petzval::FocalSurface surface_of(const Bench& bench, bool extents) {
-  Film film = bench.film;
-  film.z_mm = bench.lens.lens.film_z();
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> one;
-  std::vector<petzval::FocalPoint> points(16);
-  for (petzval::FocalPoint& point : points) {
-    point.film_point = {(one(random) - 0.5) * film.width_mm, (one(random) - 0.5) * film.height_mm};
-    point.inverse_distance = 1e-3 * one(random);
-    if (extents) point.extent_stops = 2 * one(random);
-  }
-  return {petzval::thick_lens(bench.lens.lens), film, points};
-}
-
 void print_rows(const Bench& bench, const std::vector<Row>& rows) {
   const auto mine = [&](const Row& row) { return row.lens == bench.lens.id; };
   const auto first = std::find_if(rows.begin(), rows.end(), mine);
@@ -230,7 +209,6 @@ void print_setup(const Bench& bench) {
   };
   print("FilmPupilTable::enclosing", [&] { petzval::FilmPupilTable::enclosing(lens, bench.half_diagonal); });
   print("Camera, exact_float", [&] { Camera(lens, bench.film); });
-  print("with transmission", [&] { Camera(lens, bench.film, {.transmission = true}); });
   print("exact_float, tilted", [&] { Camera(lens, bench.tilted); });
   for (const ModelKind model : petzval::models()) {
     print(std::string(petzval::name(model)),
@@ -261,25 +239,7 @@ void print_all_setups() {
   }
 }
 
-std::string json(const std::vector<Row>& rows) {
-  using Json = nlohmann::ordered_json;
-  Json array = Json::array();
-  for (const Row& row : rows) {
-    array.push_back({{"lens", row.lens},
-                     {"model", petzval::name(row.model)},
-                     {"call", row.call},
-                     {"precision", row.precision()},
-                     {"ns_per_sample", row.ns},
-                     {"useful", row.useful},
-                     {"ns_per_useful_ray", row.ns_per_useful()},
-                     {"textbook_ns_per_ray", row.textbook_ns},
-                     {"ratio_to_textbook", row.ratio()}});
-  }
-  return array.dump(1) + '\n';
-}
-
 int run(std::vector<char*> arguments) {
-  const auto json_file = take_option(arguments, "--json");
   initialize(static_cast<int>(arguments.size()), arguments.data(), 15, 0.005);
   std::deque<Bench> benches;
   benches.emplace_back("double_gauss_100mm_f2.0", 40.4, 8);
@@ -326,28 +286,6 @@ int run(std::vector<char*> arguments) {
         benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
       }
     }
-    // Light lost at uncoated surfaces and at single layers.
-    for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_float}) {
-      for (const auto& [call, coating] :
-           {std::pair{"uncoated", petzval::Coating{}}, std::pair{"coated", petzval::Coating::quarter_wave()}}) {
-        rows.push_back({bench.lens.id, call, model, false,
-                        Camera(petzval::with_coating(bench.lens.lens, coating), bench.film,
-                               {.model = model, .transmission = true})});
-        benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
-      }
-    }
-    // Focal surfaces.
-    const auto add = [&](const char* call, const petzval::CameraOptions& options, bool single) {
-      rows.push_back({bench.lens.id, call, options.model, single, Camera(bench.lens.lens, bench.film, options)});
-      benchmark::RegisterBenchmark(rows.back().name().c_str(), single ? time_single : time_batches<float>, rows.back());
-    };
-    const petzval::FocalSurface surface = surface_of(bench, false), extents = surface_of(bench, true);
-    add("surface", {.model = ModelKind::thick, .focal_surface = surface}, false);
-    add("surface, single", {.model = ModelKind::thick, .focal_surface = surface}, true);
-    add("extents", {.model = ModelKind::thick, .focal_surface = extents}, false);
-    add("power", {.model = ModelKind::thick, .expressive = {.power = {{0, 1}, {0.6, 1.01}, {1, 0.99}}}}, false);
-    add("from lens",
-        {.model = ModelKind::thick, .expressive = petzval::fit_expressive_lens(bench.lens.lens, bench.film)}, false);
   }
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
@@ -369,7 +307,6 @@ int run(std::vector<char*> arguments) {
   for (const Bench& bench : benches) print_rows(bench, results);
   for (const Bench& bench : benches) print_setup(bench);
   print_all_setups();
-  if (json_file) petzval::write_file(json(results), *json_file);
   return 0;
 }
 

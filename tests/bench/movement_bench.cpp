@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of tilting a film to 24 focus points on one thread. Measures fits with ideal thin and thick lenses, robust or
-// not, within and at the limit of tilt; fits with exact rays, including their bundles; and the whole loop of an
-// interactive host from keyframed points on a mesh to a film.
+// not, within and at the limit of tilt, and fits with exact rays, including their bundles.
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <random>
 #include <string>
@@ -57,29 +55,6 @@ void fit(benchmark::State& state, const Lens& lens, const IdealLens& ideal, bool
   state.SetItemsProcessed(state.iterations());
 }
 
-/// Focus points on triangles of a mesh, with keys, over time.
-template <class Lens>
-void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
-  const std::vector<Vec3<double>> first = scene(ideal, 0), last = scene(ideal, 1);
-  std::vector<FocusPoint> points;
-  for (std::size_t i = 0; i < point_count; ++i) {
-    const TrianglePoint on{.vertices = {i, (i + 1) % point_count, (i + 2) % point_count}, .barycentric = {1, 0, 0}};
-    points.push_back({.keys = {{.time = 0, .anchor = on}, {.time = 1, .anchor = on, .weight = 2}}});
-  }
-  TiltOptions options{.robust = true};
-  options.film.z_mm = ideal.rear_focal_z;
-  std::vector<Vec3<double>> vertices(point_count);
-  double time = 0;
-  for (auto _ : state) {
-    time = std::fmod(time + 0.0137, 1.0);
-    for (std::size_t i = 0; i < point_count; ++i) vertices[i] = first[i] + time * (last[i] - first[i]);
-    const FocusTime moment{.time = time, .vertices = vertices, .film = options.film};
-    const std::vector<FocusTarget> targets = focus_targets(ideal, points, moment);
-    benchmark::DoNotOptimize(fit_tilt(lens, targets, options).film.z());
-  }
-  state.SetItemsProcessed(state.iterations());
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -98,8 +73,6 @@ int main(int argc, char** argv) {
   add("exact rays", fit<ImageRays>, bundles, thick, false, limit);
   add("exact rays, robust", fit<ImageRays>, bundles, thick, true, limit);
   add("exact rays, at the limit", fit<ImageRays>, bundles, thick, false, radians(0.5));
-  add("loop, thick, robust", loop<IdealLens>, thick, thick);
-  add("loop, exact rays, robust", loop<ImageRays>, bundles, thick);
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
   std::printf("%-34s %9s\n", "film through 24 points (minima)", "us");

@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   };
   add("Gauss f2", "double_gauss_100mm_f2.0", 15, 22);
   add("fisheye", "fisheye_6.3mm_f2.8", 100, 110);
-  Table table("result", Compare::cost, "in traced rays (minima)");
+  Table table("in traced rays (minima)");
   benchmark::RunSpecifiedBenchmarks(&table);
   return 0;
 }

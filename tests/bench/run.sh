@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the benchmarks and prints their tables; the tables take two minutes.
 #
-#   sh tests/bench/run.sh [--json FILE] [--isa baseline|avx2|avx512] [options of Google Benchmark]
+#   sh tests/bench/run.sh [--isa baseline|avx2|avx512] [options of Google Benchmark]
 #
-# --json writes the rows of trace_bench as an array of objects, --isa selects the only instruction set of its batches.
+# --isa selects the only instruction set of the batches of trace_bench.
 # BUILD_DIR=... replaces build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
@@ -16,11 +16,11 @@ build -DPETZVAL_BUILD_BENCHMARKS=ON -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EX
 echo
 "$BUILD_DIR/tests/bench/trace_bench" "$@"
 
-# Only trace_bench has these options.
+# Only trace_bench has this option.
 left=$#
 while [ "$left" -gt 0 ]; do
   case $1 in
-    --json | --isa) shift 2; left=$((left - 2)) ;;
+    --isa) shift 2; left=$((left - 2)) ;;
     *) set -- "$@" "$1"; shift; left=$((left - 1)) ;;
   esac
 done

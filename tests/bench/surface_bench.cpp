@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of a focal surface: frames in float on one and two threads, 800 x 600 film points by the loops of each
+// Time of a focal surface: frames in float on one thread, 800 x 600 film points by the loops of each
 // instruction set on one thread, and single film points in double.
 #include <benchmark/benchmark.h>
 
@@ -27,11 +27,11 @@ std::vector<FocalPoint> points_on(const Film& film, std::size_t count) {
   return points;
 }
 
-void frame(benchmark::State& state, const Film& film, std::size_t count, int threads) {
+void frame(benchmark::State& state, const Film& film, std::size_t count) {
   const FocalSurface surface(thin_lens(50, 2), film, points_on(film, count));
   std::vector<float> distances(static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows));
   for (auto _ : state) {
-    surface.frame<float>(film, threads, distances.data(), nullptr);
+    surface.frame<float>(film, 1, distances.data(), nullptr);
     benchmark::DoNotOptimize(distances.data());
   }
   state.SetItemsProcessed(state.iterations());
@@ -75,11 +75,8 @@ int main(int argc, char** argv) {
   const auto add = [](const std::string& name, auto&&... work) {
     return benchmark::RegisterBenchmark(name.c_str(), work...)->UseRealTime();
   };
-  for (const int threads : {1, 2}) {
-    const std::string on = threads == 1 ? ", 1 thread" : ", 2 threads";
-    add("800 x 600, 16 points" + on, frame, small, std::size_t{16}, threads);
-    add("1920 x 1080, 64 points" + on, frame, large, std::size_t{64}, threads);
-  }
+  add("800 x 600, 16 points", frame, small, std::size_t{16});
+  add("1920 x 1080, 64 points", frame, large, std::size_t{64});
   for (const SurfaceKind kind : {SurfaceKind::affine, SurfaceKind::shepard}) {
     for (const double beta : {2.0, 3.0, 2.5}) {
       char text[64];

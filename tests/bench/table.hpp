@@ -121,39 +121,25 @@ class Rounds : public benchmark::BenchmarkReporter {
   std::vector<Line> lines_;
 };
 
-/// Kind of comparison with the first benchmark of the same group, in the last column of a table.
-enum class Compare {
-  speed,  ///< the first over the fastest round; times in nanoseconds
-  cost    ///< the fastest round over the first; times in microseconds
-};
-
-/// Prints one line per benchmark, in the order of registration: fastest, median and slowest round, and the comparison
-/// with the first benchmark of the same group (the part of the name behind '/').
+/// Prints one line per benchmark, in the order of registration: fastest, median and slowest round (us), and the ratio
+/// to the first benchmark of the same group (the part of the name behind '/').
 class Table : public Rounds {
  public:
-  /// unit: the item of a time, as in "ns per ray"; comparison: heading of the last column.
-  explicit Table(std::string unit, Compare compare = Compare::speed, std::string comparison = "times as fast (minima)")
-      : unit_(std::move(unit)), compare_(compare), comparison_(std::move(comparison)) {}
+  explicit Table(std::string ratio) : ratio_(std::move(ratio)) {}
 
   void Finalize() override {
     Rounds::Finalize();
-    const bool cost = compare_ == Compare::cost;
-    const double scale = cost ? 1e6 : 1e9;
-    std::printf("%-34s %9s %9s %9s %10s   %s\n", ((cost ? "us per " : "ns per ") + unit_).c_str(), "min", "median",
-                "max", cost ? "1000/s" : "million/s", comparison_.c_str());
+    std::printf("%-34s %9s %9s %9s %10s   %s\n", "us per result", "min", "median", "max", "1000/s", ratio_.c_str());
     for (const Line& line : lines()) {
       const std::string group = line.name.substr(line.name.find('/') + 1);
       const auto first =
           std::find_if(lines().begin(), lines().end(), [&](const Line& l) { return l.name.ends_with("/" + group); });
-      const double times = first->min() / line.min();
-      std::printf("%-34s %9s %9s %9s %10s   %s\n", line.name.c_str(), digits(scale * line.min()).c_str(),
-                  digits(scale * line.median()).c_str(), digits(scale * line.max()).c_str(),
-                  digits(1e3 / (scale * line.min())).c_str(), digits(cost ? 1 / times : times, 3).c_str());
+      std::printf("%-34s %9s %9s %9s %10s   %s\n", line.name.c_str(), digits(1e6 * line.min()).c_str(),
+                  digits(1e6 * line.median()).c_str(), digits(1e6 * line.max()).c_str(),
+                  digits(1e-3 / line.min()).c_str(), digits(line.min() / first->min(), 3).c_str());
     }
   }
 
  private:
-  std::string unit_;
-  Compare compare_;
-  std::string comparison_;
+  std::string ratio_;
 };

@@ -2,27 +2,22 @@
 // Time and error of rays from the film through the lens: the textbook tracer, the library ray by ray, and its batches
 // on every instruction set of the processor.
 //
-//   trace_bench [--isa baseline|avx2|avx512] [--json FILE] [options of Google Benchmark]
+//   trace_bench [--isa baseline|avx2|avx512] [options of Google Benchmark]
 //
-// Every round traces all rays of a set; rounds of all rows are interleaved and threads pinned. Ratios compare the
-// fastest rounds, because slow rounds on a shared machine include the load of other users. One thread is timed by its
-// own clock, two by wall time. Errors of directions are measured on the results of each row.
+// Every round traces all rays of a set; rounds of all rows are interleaved. Ratios compare the fastest rounds, because
+// slow rounds on a shared machine include the load of other users. Errors of directions are measured on the results of
+// each row.
 #include <benchmark/benchmark.h>
-#include <pthread.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <deque>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/files.hpp"
 #include "petzval/io/json.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
@@ -37,27 +32,7 @@ using petzval::InstructionSet;
 
 constexpr std::size_t ray_count = 16384;
 
-/// Processors that this program may use, before threads are pinned.
-std::vector<int> processors() {
-  cpu_set_t allowed;
-  std::vector<int> result;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return result;
-  for (int i = 0; i < CPU_SETSIZE; ++i) {
-    if (CPU_ISSET(i, &allowed)) result.push_back(i);
-  }
-  return result;
-}
-
-void pin(int processor) {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(processor, &one);
-  pthread_setaffinity_np(pthread_self(), sizeof one, &one);
-}
-
-void measure(benchmark::State& state, const Row& row, const std::vector<int>& cores) {
-  const auto thread = static_cast<std::size_t>(state.thread_index());
-  if (thread < cores.size()) pin(cores[thread]);
+void measure(benchmark::State& state, const Row& row) {
   petzval::limit_batches(row.isa);
   const auto work = row.make();
   for (auto _ : state) {
@@ -104,17 +79,16 @@ Row one_by_one(const BenchLens& bench, const RaySet& set, const std::string& ray
 
 template <template <class> class Batch, class T>
 Row batch(const BenchLens& bench, const RaySet& set, const std::string& rays, const std::string& code,
-          InstructionSet isa, Arithmetic mode, int threads = 1) {
-  Row row{&bench, &set, rays, code, std::is_same_v<T, double>, threads, isa, mode};
+          InstructionSet isa, Arithmetic mode) {
+  Row row{&bench, &set, rays, code, std::is_same_v<T, double>, isa, mode};
   const BatchOptions options{.travel = petzval::Travel::to_scene, .arithmetic = mode};
   row.make = [&bench, &set, options] { return std::make_unique<Batch<T>>(bench, set, options); };
   return row;
 }
 
-/// Measures every implementation on one lens and set of rays; extra: also two threads, arrays of structures and
-/// derivatives.
+/// Measures every implementation on one lens and set of rays; extra: also arrays of structures and derivatives.
 std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::string& rays,
-                         const std::vector<InstructionSet>& sets, bool extra, bool two_threads) {
+                         const std::vector<InstructionSet>& sets, bool extra) {
   std::vector<Row> rows;
   rows.push_back({.bench = &bench, .set = &set, .rays = rays, .code = "textbook", .in_double = false});
   rows.back().make = [&bench, &set] { return std::make_unique<TextbookWork>(bench, set); };
@@ -130,10 +104,6 @@ std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::s
   }
   if (!extra) return rows;
   const InstructionSet widest = sets.back();
-  if (two_threads) {
-    rows.push_back(batch<ArraysWork, float>(bench, set, rays, "batch", widest, Arithmetic::fast, 2));
-    rows.push_back(batch<ArraysWork, double>(bench, set, rays, "batch", widest, Arithmetic::fast, 2));
-  }
   rows.push_back(batch<StructuresWork, float>(bench, set, rays, "batch_aos", widest, Arithmetic::fast));
   rows.push_back(batch<StructuresWork, double>(bench, set, rays, "batch_aos", widest, Arithmetic::fast));
   if (rays != "pass") return rows;
@@ -164,7 +134,6 @@ petzval::Prescription eleven(const std::string& kind, double conic, const std::v
 
 struct Options {
   std::vector<InstructionSet> sets;
-  std::string json_file;
 };
 
 /// Removes the options of this program from the command line.
@@ -172,7 +141,6 @@ Options own_options(std::vector<char*>& arguments) {
   Options options;
   const auto available = petzval::instruction_sets();
   options.sets.assign(available.begin(), available.end());
-  if (const auto file = take_option(arguments, "--json")) options.json_file = *file;
   if (const auto isa = take_option(arguments, "--isa")) {
     std::erase_if(options.sets, [&](InstructionSet set) { return petzval::name(set) != *isa; });
     if (options.sets.empty()) {
@@ -199,12 +167,11 @@ int run(std::vector<char*> arguments) {
   kinds.emplace_back(eleven("conics", -0.5, {}), 10, ray_count);
   kinds.emplace_back(eleven("aspheres", 0, {{4, 1e-7}, {6, 1e-10}, {8, -1e-13}, {10, 1e-16}}), 10, ray_count);
 
-  const std::vector<int> cores = processors();
   std::vector<Row> rows, kind_rows;
   for (const BenchLens& bench : lenses) {
     for (const bool pass : {true, false}) {
-      const auto some = rows_of(bench, pass ? bench.pass : bench.mix, pass ? "pass" : "mix", options.sets,
-                                &bench == &lenses.front(), cores.size() > 1);
+      const auto some =
+          rows_of(bench, pass ? bench.pass : bench.mix, pass ? "pass" : "mix", options.sets, &bench == &lenses.front());
       rows.insert(rows.end(), some.begin(), some.end());
     }
   }
@@ -214,10 +181,7 @@ int run(std::vector<char*> arguments) {
     kind_rows.push_back(batch<ArraysWork, double>(bench, bench.pass, "pass", "batch", widest, Arithmetic::fast));
   }
   for (const auto* some : {&rows, &kind_rows}) {
-    for (const Row& row : *some) {
-      auto* registered = benchmark::RegisterBenchmark(row.name().c_str(), measure, row, cores);
-      if (row.threads > 1) registered->Threads(row.threads)->UseRealTime();
-    }
+    for (const Row& row : *some) benchmark::RegisterBenchmark(row.name().c_str(), measure, row);
   }
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
@@ -241,7 +205,6 @@ int run(std::vector<char*> arguments) {
   const std::vector<Result> results = results_of(rows);
   print_results(results);
   print_kinds(results_of(kind_rows));
-  if (!options.json_file.empty()) petzval::write_file(json(results), options.json_file);
   return 0;
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
 namespace {
 
 std::string rounds(const Result& r) {
@@ -18,17 +16,17 @@ void print_heading(const Row& row) {
   if (row.rays == "mix") std::printf(" (%.1f %% reach the scene)", 100 * row.set->passing);
   std::printf(
       "\n\n"
-      "| code          | isa      | precision | mode         | threads | ns per ray: min [median, max] | per surface "
+      "| code          | isa      | precision | mode         | ns per ray: min [median, max] | per surface "
       "| x textbook | error, rad: rms | max     |\n"
-      "|---------------|----------|-----------|--------------|--------:|------------------------------:|------------:"
+      "|---------------|----------|-----------|--------------|------------------------------:|------------:"
       "|-----------:|----------------:|--------:|\n");
 }
 
 void print_line(const Result& r) {
-  std::printf("| %-13s | %-8s | %-9s | %-12s | %7d | %29s | %11s | %10s | %14.2e%c | %.1e |\n", r.row.code.c_str(),
-              petzval::name(r.row.isa).data(), r.row.precision(), petzval::name(r.row.mode).data(), r.row.threads,
-              rounds(r).c_str(), digits(r.ns() / r.surfaces(), 3).c_str(),
-              r.textbook ? digits(*r.ratio(), 3).c_str() : "", r.error.rms, r.less_exact() ? '*' : ' ', r.error.max);
+  std::printf("| %-13s | %-8s | %-9s | %-12s | %29s | %11s | %10s | %14.2e%c | %.1e |\n", r.row.code.c_str(),
+              petzval::name(r.row.isa).data(), r.row.precision(), petzval::name(r.row.mode).data(), rounds(r).c_str(),
+              digits(r.ns() / r.surfaces(), 3).c_str(), r.textbook ? digits(*r.ratio(), 3).c_str() : "", r.error.rms,
+              r.less_exact() ? '*' : ' ', r.error.max);
 }
 
 }  // namespace
@@ -40,7 +38,7 @@ std::string Row::name() const {
     result += '/';
     result += part;
   }
-  return result + '/' + std::to_string(threads);
+  return result;
 }
 
 std::optional<double> Result::ratio() const {
@@ -80,24 +78,4 @@ void print_kinds(const std::vector<Result>& results) {
     std::printf("| %-8s | %-9s | %29s | %11s | %8s |\n", r.row.bench->name.c_str(), r.row.precision(),
                 rounds(r).c_str(), digits(r.ns() / r.surfaces(), 3).c_str(), digits(r.ns() / sphere->ns(), 3).c_str());
   }
-}
-
-std::string json(const std::vector<Result>& results) {
-  using Json = nlohmann::ordered_json;
-  Json array = Json::array();
-  for (const Result& r : results) {
-    array.push_back({{"lens", r.row.bench->id},
-                     {"rays", r.row.rays},
-                     {"code", r.row.code},
-                     {"isa", petzval::name(r.row.isa)},
-                     {"precision", r.row.precision()},
-                     {"mode", petzval::name(r.row.mode)},
-                     {"threads", r.row.threads},
-                     {"ns_per_ray", r.ns()},
-                     {"ns_per_ray_surface", r.ns() / r.surfaces()},
-                     {"ratio_to_textbook", r.textbook ? Json(*r.ratio()) : Json()},
-                     {"direction_error_rms", r.error.rms},
-                     {"direction_error_max", r.error.max}});
-  }
-  return array.dump(1) + '\n';
 }

@@ -18,7 +18,6 @@ struct Row {
   const RaySet* set;
   std::string rays, code;
   bool in_double;
-  int threads = 1;
   petzval::InstructionSet isa = petzval::InstructionSet::baseline;
   petzval::Arithmetic mode = petzval::Arithmetic::reproducible;
   std::function<std::unique_ptr<Work>()> make{};
@@ -52,6 +51,3 @@ void print_results(const std::vector<Result>& results);
 
 /// Lenses of one kind of surface each, the first of them spheres, as a table in Markdown.
 void print_kinds(const std::vector<Result>& results);
-
-/// An array of flat objects; null for ratios that were not measured.
-std::string json(const std::vector<Result>& results);
