@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films and focal surfaces fitted to any focus points.
+// Films fitted to any focus points.
 #include <vector>
 
 #include "fit/fit_to_rays.hpp"
 #include "laws.hpp"
-#include "petzval/camera/focal_surface.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "wild_lens.hpp"
@@ -42,32 +41,6 @@ void tilt(const auto& lens, const std::vector<FocusTarget>& targets, const TiltO
   fuzz::require(fit.film.angle() <= options.max_tilt_rad + 1e-6, "a fit keeps the limit of tilt");
 }
 
-void surface(const IdealLens& lens, const Film& film, fuzz::Bytes& bytes) {
-  std::vector<FocalPoint> points;
-  for (int i = bytes.count(0, 6); i > 0; --i) {
-    FocalPoint point{.film_point = {bytes.number(-20, 20), bytes.number(-15, 15)}};
-    const int kind = bytes.byte();
-    if (kind < 224) point.inverse_distance = bytes.number(0, 1 / 300.0);
-    if (kind % 4 == 1) point.extent_stops = bytes.number(-4, 4);
-    if (kind % 8 == 2) point.weight = bytes.number(0, 3);
-    if (kind % 8 == 3) point.fade = bytes.number(0, 1);
-    if (kind % 16 == 4) point.blur_mm = bytes.number(-0.1, 0.1);
-    points.push_back(point);
-  }
-  const FocalSurface fitted(
-      lens, film, points,
-      {.kind = bytes.one_in(2) ? SurfaceKind::shepard : SurfaceKind::affine, .beta = bytes.number(1, 8)});
-  for (int i = 0; i < 4; ++i) {
-    const FilmPoint place{bytes.number(-30, 30), bytes.number(-30, 30)};
-    const auto slopes = fitted.slopes(place);
-    fuzz::require(std::isfinite(slopes.values.inverse_distance) && std::isfinite(slopes.values.extent_stops),
-                  "a focal surface is finite");
-    fuzz::require(
-        slopes.values.inverse_distance <= fitted.nearest() && slopes.values.inverse_distance >= fitted.farthest(),
-        "a focal surface keeps its limits");
-  }
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -93,8 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     };
     const IdealLens lens = work < 64 ? thick_lens(fuzz::wild_lens(bytes)) : wild_thin_lens();
     if (work < 160) return tilt(lens, wild_targets(bytes), options);
-    if (work < 192) return check(autofocus(lens, wild_targets(bytes)).film);
-    surface(lens, {.width_mm = 36, .height_mm = 24, .z_mm = lens.rear_focal_z + bytes.number(0, 3)}, bytes);
+    check(autofocus(lens, wild_targets(bytes)).film);
   });
   return 0;
 }
