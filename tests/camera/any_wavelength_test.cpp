@@ -197,25 +197,6 @@ TEST(AnyWavelengthOf, ExposureEqualsExposureOfACompiledWavelength) {
   }
 }
 
-TEST(AnyWavelengthOf, CompiledWavelengthsInNmEqualTheirIndices) {
-  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
-  const Lens lens = compiled(prescription, eight_wavelengths());
-  const Film film = film_for(prescription, lens);
-  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick, ModelKind::thin}) {
-    const Camera camera(lens, film, {.model = model});
-    Samples samples(film);
-    for (int i = 0; i < 80; ++i) {
-      CameraSample sample = samples(static_cast<std::size_t>(i) % 8);
-      const CameraRay wanted = camera.sample(sample);
-      sample.wavelength = Wavelength::nm(lens.wavelengths_nm()[static_cast<std::size_t>(i) % 8]);
-      const CameraRay found = camera.sample(sample);
-      ASSERT_EQ(found.fate, wanted.fate);
-      ASSERT_NEAR(found.weight, wanted.weight, 1e-5 * wanted.weight);
-      ASSERT_NEAR(found.ray.direction.x, wanted.ray.direction.x, 3e-7);  // below the rounding of float
-    }
-  }
-}
-
 // The numbers of wavelengths cover tables in one register, in two registers and in memory.
 TEST(AnyWavelengthOf, MixedBatchEqualsBatchesOfOneWavelength) {
   const Prescription prescription = petzval::testing::data_prescription("tessar_100mm_f2.8");

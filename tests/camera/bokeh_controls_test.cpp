@@ -11,8 +11,8 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "../low_discrepancy.hpp"
 #include "camera_samples.hpp"
-#include "core/low_discrepancy.hpp"
 #include "iris/iris_shape.hpp"
 #include "iris/iris_weights.hpp"
 #include "petzval/camera/camera.hpp"
@@ -35,7 +35,7 @@ const BokehControls soft{.weight_distribution = -4, .weight_strength = 0.8};
 template <class T>
 Samples<T> some_samples(const Film& on, std::size_t count) {
   Samples<T> samples;
-  const core_detail::Kronecker<4> random(5);
+  const testing::Kronecker<4> random(5);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto [x, y, u, v] = random(i);
     samples.add(on.width_mm * (x - 0.5), on.height_mm * (y - 0.5), u, v);
@@ -94,7 +94,7 @@ TEST_P(RealLens, WeightsApplyAtTheStop) {
         const Film small{.width_mm = 18, .height_mm = 12};
         const Camera camera(lens, small, {.model = model, .bokeh = controls});
         const Camera plain(lens, small, {.model = model});
-        const core_detail::Kronecker<4> random(7);
+        const testing::Kronecker<4> random(7);
         int seen = 0;
         // Stop points are interpolated by fitted polynomials; the polynomial model also has approximate rays.
         const double near = model == ModelKind::exact_double ? 0.02 : 0.1;
@@ -143,7 +143,7 @@ TEST(BokehControls, MapHasOneOrientationInAllModels) {
         double sum_x = 0, sum_y = 0, light = 0, all = 0;
         constexpr std::size_t count = 2000;
         for (std::size_t i = 0; i < count; ++i) {
-          const auto [u, v] = core_detail::fibonacci_point(i, count);
+          const auto [u, v] = testing::fibonacci_point(i, count);
           const CameraRay r = camera.sample({.film = {}, .pupil_u = u, .pupil_v = v});
           all += plain.sample({.film = {}, .pupil_u = u, .pupil_v = v}).weight;
           if (!r) continue;
@@ -172,7 +172,7 @@ TEST(BokehControls, WeightsKeepTheExposureOfEveryModel) {
       double sum = 0, squares = 0;
       constexpr std::size_t count = 1 << 14;
       for (std::size_t i = 0; i < count; ++i) {
-        const auto [u, v] = core_detail::fibonacci_point(i, count);
+        const auto [u, v] = testing::fibonacci_point(i, count);
         const double weight = camera.sample({.film = {}, .pupil_u = u, .pupil_v = v}).weight;
         sum += weight / count, squares += weight * weight / count;
       }
@@ -201,7 +201,7 @@ TEST_P(CatsEyes, FilmAndSceneSideAgree) {
       const BokehControls controls{
           .lens_ratio = 1.1, .rate_of_change = 0.9, .keep_light = keep_light, .weight_distribution = 4};
       const Camera camera(lens, film, {.model = model, .bokeh = controls});
-      const core_detail::Kronecker<4> random(11);
+      const testing::Kronecker<4> random(11);
       int seen = 0, lost = 0;
       for (std::uint32_t i = 0; i < 1000; ++i) {
         const auto [x, y, u, v] = random(i);
@@ -229,7 +229,7 @@ TEST_P(CatsEyes, ExposureFollowsTheAreaOrIsKept) {
     double sum = 0;
     constexpr std::size_t count = 4096;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      const auto [u, v] = testing::fibonacci_point(i, count);
       sum += camera.sample({.film = at, .pupil_u = u, .pupil_v = v}).weight / count;
     }
     return sum;
@@ -256,7 +256,7 @@ TEST_P(CatsEyes, ConnectionsEqualFilmSamples) {
           with_iris(open, iris), on,
           {.model = model,
            .bokeh = {.lens_ratio = 1.1, .rate_of_change = 1.2, .keep_light = keep_light, .weight_distribution = 4}});
-      const core_detail::Kronecker<4> random(13);
+      const testing::Kronecker<4> random(13);
       double seen = 0, connected = 0;
       constexpr int count = 20000;
       constexpr double side = 1200, z = -3000;  // luminous square that fills the image, mm
@@ -288,7 +288,7 @@ TEST(BokehControls, ActOnThePupilOfAStopWithoutARim) {
     double sum = 0;
     constexpr std::size_t count = 1 << 12;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      const auto [u, v] = testing::fibonacci_point(i, count);
       sum += camera.sample({.film = {}, .pupil_u = u, .pupil_v = v}).weight / count;
     }
     return sum;

@@ -13,7 +13,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/low_discrepancy.hpp"
+#include "../low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -124,7 +124,7 @@ TEST(ExpressiveLens, DispersionMultipliesAxialColour) {
 /// Angular blur of a film point in a scene plane: RMS distance of its rays from their mean, divided by the distance.
 double spot(const Camera& camera, const FilmPoint& film, double z) {
   double weight = 0, x = 0, y = 0, square = 0;
-  const core_detail::Kronecker<2> random(0);
+  const testing::Kronecker<2> random(0);
   for (std::uint32_t i = 0; i < 2000; ++i) {
     const auto [u, v] = random(i);
     const CameraRay ray = camera.sample({film, u, v});

@@ -10,7 +10,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/low_discrepancy.hpp"
+#include "../low_discrepancy.hpp"
 #include "petzval/core/error.hpp"
 
 namespace focal_surface_test {
@@ -24,18 +24,29 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const IdealLens lens = thin_lens(50, 2);
 const Film film{.z_mm = 50 + 50 * 50 / 1950.0};  // focused at 2 m
 
+/// Both kinds with weights of several powers.
+std::vector<FocalSurfaceOptions> every_kind() {
+  std::vector<FocalSurfaceOptions> result;
+  for (const double beta : {1.0, 2.0, 2.5, 3.0, 4.0, 5.3, 8.0}) {
+    for (const SurfaceKind kind : {SurfaceKind::affine, SurfaceKind::shepard}) result.push_back({kind, beta});
+  }
+  return result;
+}
+
 TEST(FocalSurface, PassesThroughItsPoints) {
   const std::vector<FocalPoint> points{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
                                        {.film_point = {9, 2}, .inverse_distance = 1 / 4000.0, .extent_stops = -1},
                                        {.film_point = {1, 5}, .extent_stops = 3},
                                        {.film_point = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
-  const FocalSurface surface(lens, film, points);
-  EXPECT_EQ(surface.origin_z(), 0);
-  for (const auto& point : points) {
-    const auto values = surface.at(point.film_point);
-    EXPECT_EQ(values.inverse_distance, point.inverse_distance.value_or(values.inverse_distance));
-    EXPECT_EQ(values.extent_stops, point.extent_stops.value_or(values.extent_stops));
-    EXPECT_EQ(values.blur_mm, 0);
+  for (const FocalSurfaceOptions& options : every_kind()) {
+    const FocalSurface surface(lens, film, points, options);
+    EXPECT_EQ(surface.origin_z(), 0);
+    for (const auto& point : points) {
+      const auto values = surface.at(point.film_point);
+      EXPECT_EQ(values.inverse_distance, point.inverse_distance.value_or(values.inverse_distance));
+      EXPECT_EQ(values.extent_stops, point.extent_stops.value_or(values.extent_stops));
+      EXPECT_EQ(values.blur_mm, 0);
+    }
   }
 }
 
@@ -132,12 +143,16 @@ TEST(FocalSurface, ReproducesThePlaneOfFocusOfATiltedFilm) {
   for (const FilmPoint at : {FilmPoint{-10, -8}, FilmPoint{12, -3}, FilmPoint{2, 9}, FilmPoint{-5, 5}}) {
     points.push_back({.film_point = at, .inverse_distance = inverse(at)});
   }
-  const FocalSurface surface(lens, film, points);
-  for (const auto& at : random_points(5, 50)) {
-    EXPECT_NEAR(surface.at(at.film_point).inverse_distance, inverse(at.film_point), 1e-15);
-    const auto slopes = surface.slopes(at.film_point);
-    EXPECT_NEAR(slopes.inverse_distance.x, 2e-5 / z * 50, 1e-15);
-    EXPECT_NEAR(slopes.inverse_distance.y, -1e-5, 1e-15);
+  for (const FocalSurfaceOptions& options : every_kind()) {
+    if (options.kind != SurfaceKind::affine) continue;
+    const FocalSurface surface(lens, film, points, options);
+    const double rounding = options.beta <= 4 ? 1e-15 : 1e-13;
+    for (const auto& at : random_points(5, 50)) {
+      EXPECT_NEAR(surface.at(at.film_point).inverse_distance, inverse(at.film_point), rounding) << options.beta;
+      const auto slopes = surface.slopes(at.film_point);
+      EXPECT_NEAR(slopes.inverse_distance.x, 2e-5 / z * 50, rounding) << options.beta;
+      EXPECT_NEAR(slopes.inverse_distance.y, -1e-5, rounding) << options.beta;
+    }
   }
 }
 
@@ -216,7 +231,7 @@ TEST(FocalSurface, FloatEqualsDoubleForSteepWeights) {
       const FocalSurface surface(lens, film, random_points(seed, 3 + seed % 8), {.beta = beta});
       std::vector<float> x, y;
       for (std::size_t i = 0; i < 200; ++i) {
-        const auto [u, v] = core_detail::Kronecker<2>()(i);
+        const auto [u, v] = petzval::testing::Kronecker<2>()(i);
         x.push_back(static_cast<float>(36 * (u - 0.5))), y.push_back(static_cast<float>(24 * (v - 0.5)));
       }
       std::vector<float> in_float(x.size());
@@ -230,9 +245,7 @@ TEST(FocalSurface, FloatEqualsDoubleForSteepWeights) {
   }
 }
 
-TEST(FocalSurface, BatchesAndFramesEqualSingleFilmPoints) {
-  const auto points = random_points(7, 16);
-  const FocalSurface surface(lens, film, points);
+void expect_equal_batches(const FocalSurface& surface) {
   const Film raster{.columns = 37, .rows = 23, .z_mm = 50};
   const std::size_t count = 37 * 23;
   std::vector<double> x, y, distances(count), extents(count), frame(count), frame_extents(count);
@@ -258,6 +271,15 @@ TEST(FocalSurface, BatchesAndFramesEqualSingleFilmPoints) {
   std::vector<float> in_float(count);
   surface.at<float>(count, xf.data(), yf.data(), in_float.data(), nullptr);
   for (std::size_t i = 0; i < count; ++i) EXPECT_NEAR(in_float[i], distances[i], 1e-8);
+}
+
+class FocalSurfaces : public ::testing::TestWithParam<FocalSurfaceOptions> {};
+
+INSTANTIATE_TEST_SUITE_P(FocalSurface, FocalSurfaces, ::testing::ValuesIn(every_kind()));
+
+TEST_P(FocalSurfaces, BatchesAndFramesEqualSingleFilmPoints) {
+  for (const std::size_t points : {2, 13, 64, 200})
+    expect_equal_batches({lens, film, random_points(7, points), GetParam()});
 }
 
 TEST(FocalSurface, StaysWithinItsLimits) {
@@ -315,6 +337,7 @@ TEST(FocalSurface, RefusesInvalidPoints) {
                {"focal surface", "point 2", "place", "nan", 0});
   const auto points = std::vector{good};
   const auto weightless = std::vector{FocalPoint{.inverse_distance = 1e-3, .weight = 0}, FocalPoint{}};
+  expect_error(surface({.film_point = {1, 1e8}, .inverse_distance = 1e-3}), {"focal surface", "point 2", "place", 1e8});
   expect_error([&] { FocalSurface(lens, film, {}); }, {"focal surface", "points", 0});
   expect_error([&] { FocalSurface(lens, film, weightless); }, {"focal surface", "points", 2});
   expect_error([&] { FocalSurface(lens, film, points, {.beta = 0.9}); }, {"focal surface", "beta", 0.9});

@@ -84,23 +84,6 @@ TEST(CameraFocus, EveryModelFocusesAtTheSetDistance) {
   }
 }
 
-// The lenses of data/, by rays and to first order.
-TEST(CameraFocus, EveryLensFocusesAtTheSetDistance) {
-  for (const Prescription& prescription : testing::data_prescriptions()) {
-    const Lens whole = compile(prescription);
-    if (!whole.rotationally_symmetric()) continue;
-    SCOPED_TRACE(prescription.id);
-    const double f = std::abs(first_order(whole).effective_focal_length), distance = std::max(3000.0, 15 * f);
-    const Lens lens = with_focus(whole, distance, {.origin = DistanceOrigin::film});
-    const Film film{.width_mm = 0.02 * f, .height_mm = 0.02 * f};
-    const Blur exact = blur(Camera(lens, film, {.model = ModelKind::exact_double}));
-    const Blur thick = blur(Camera(lens, film, {.model = ModelKind::thick}));
-    const double wanted = 1 / (lens.film_z() - distance - exact.pupil_z);
-    EXPECT_NEAR(1 / exact.sharpest(), wanted, exact.half_depth());
-    EXPECT_NEAR(1 / thick.sharpest(), wanted, exact.half_depth());
-  }
-}
-
 // For any film position and wavelength, first-order models are sharp in the plane of the smallest blur of exact rays.
 TEST(CameraFocus, FirstOrderModelsFocusWithExactRays) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");

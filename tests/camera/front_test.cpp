@@ -8,8 +8,8 @@
 
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
+#include "../low_discrepancy.hpp"
 #include "camera_samples.hpp"
-#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
@@ -111,7 +111,7 @@ TEST(Front, ShadowRaysEndOnIt) {
     for (const ModelKind model : c.models) {
       SCOPED_TRACE(std::string(c.id) + ' ' + std::string(name(model)));
       const Camera camera(lens, film, {.model = model});
-      const core_detail::Kronecker<4> random(3);
+      const testing::Kronecker<4> random(3);
       int connected = 0;
       for (std::uint32_t i = 0; i < 400; ++i) {
         const auto [a, b, u, v] = random(i);

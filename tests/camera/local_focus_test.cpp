@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../low_discrepancy.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
-#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/geometry.hpp"
@@ -69,7 +69,7 @@ Vec3<double> in_plane(const Ray<double>& ray, double z) {
 // In every first-order model and film pose, the rays of a film point meet on the surface.
 TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
   const Lens lens = double_gauss();
-  const core_detail::Kronecker<4> random(5);
+  const testing::Kronecker<4> random(5);
   for (const Film& film : {wide, tilted_by(shifted, 7, -5)}) {
     for (const bool extents : {false, true}) {
       const FocalSurface surface = surface_of(lens, film, extents);
@@ -119,7 +119,7 @@ TEST(LocalFocus, ExtentsScaleBlurAndKeepExposure) {
 // Importance recovers film point, weight and density of a camera sample from its ray.
 TEST(LocalFocus, SceneAndFilmAreInverse) {
   const Lens lens = double_gauss();
-  const core_detail::Kronecker<5> random(2);
+  const testing::Kronecker<5> random(2);
   for (const auto& [what, options, film] :
        settings(lens, {ModelKind::thin, ModelKind::thick, ModelKind::thin_two_disc})) {
     const Camera camera(lens, film, options);
@@ -146,7 +146,7 @@ TEST(LocalFocus, SceneAndFilmAreInverse) {
 // Connections sample the pupil of the scene point, not its bounding box.
 TEST(LocalFocus, MostConnectionsArrive) {
   const Lens lens = double_gauss();
-  const core_detail::Kronecker<5> random(3);
+  const testing::Kronecker<5> random(3);
   for (const auto& [what, options, film] : settings(lens, {ModelKind::thin, ModelKind::thick})) {
     const Camera camera(lens, film, options);
     int sent = 0, arrived = 0;
@@ -208,7 +208,7 @@ TEST(LocalFocus, DensitiesEqualTheJacobianOfTheRays) {
 
 TEST(LocalFocus, DifferentialsEqualFiniteDifferences) {
   const Lens lens = double_gauss();
-  const core_detail::Kronecker<5> random(9);
+  const testing::Kronecker<5> random(9);
   for (const auto& [what, options, film] : settings(lens, {ModelKind::thick, ModelKind::thin_two_disc})) {
     const Camera camera(lens, film, options);
     const testing::CameraParts parts(camera);
@@ -248,7 +248,7 @@ TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
   }
   const Camera by_surface(lens, upright,
                           {.model = ModelKind::thick, .focal_surface = FocalSurface(ideal, upright, points)});
-  const core_detail::Kronecker<2> random(3);
+  const testing::Kronecker<2> random(3);
   for (const Camera* camera : {&by_surface, &by_film}) {
     for (std::uint32_t i = 0; i < 40; ++i) {
       const auto [x, y] = random(i);
@@ -276,7 +276,7 @@ TEST(LocalFocus, HoldsAtAnyWavelength) {
   const Camera camera(
       lens, wide,
       {.model = ModelKind::thick, .focal_surface = surface_of(lens, wide, true), .expressive = aberrations()});
-  const core_detail::Kronecker<4> random(1);
+  const testing::Kronecker<4> random(1);
   for (const Wavelength wavelength : {Wavelength(1), Wavelength(4), Wavelength::nm(500), Wavelength::nm(611)}) {
     for (std::uint32_t i = 0; i < 30; ++i) {
       const auto [x, y, u, v] = random(i);

@@ -11,9 +11,9 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "../low_discrepancy.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
-#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "tilted_films.hpp"
@@ -45,7 +45,7 @@ std::vector<Case> cases() {
 
 double mean_weight(const Camera& camera, const FilmPoint& point, double time) {
   constexpr std::size_t count = 8192;
-  const core_detail::Kronecker<2> random(5);
+  const testing::Kronecker<2> random(5);
   double sum = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto [u, v] = random(i);
@@ -104,7 +104,7 @@ TEST(MovingFilm, RaysEqualRaysOfAStillFilm) {
     for (const double time : {0.0, 0.5, 1.0}) {
       stills.emplace_back(lens, film.at(time), CameraOptions{ModelKind::exact_double});
     }
-    const core_detail::Kronecker<5> random(2);
+    const testing::Kronecker<5> random(2);
     int passed = 0;
     for (std::uint32_t i = 0; i < 400; ++i) {
       const auto [a, b, u, v, part] = random(i);

@@ -93,49 +93,6 @@ TEST(MovingLeastSquares, CollinearPointsGiveNoSlopeAcrossTheLine) {
   }
 }
 
-TEST(MovingLeastSquares, RefusesInvalidPoints) {
-  using petzval::testing::expect_error;
-  const WeighedValue good{{1, 1}, 2};
-  expect_error([&] { through({good, {{1, 1}, std::nan("")}}); }, {"test", "point 2", "value", "nan"});
-  expect_error([&] { through({good, {{1, 2e6}, 0}}); }, {"test", "point 2", "place", 1, 2e6, 1e6});
-  expect_error([&] { through({}); }, {"test", "points", 0, "weight"});
-  expect_error([&] { through({good}, SurfaceKind::affine, 8.1); }, {"test", "beta", 8.1, 1, 8});
-  expect_error([&] { through({good}, SurfaceKind::affine, 3, 0); }, {"test", "side", 0});
-}
-
-TEST(MovingLeastSquares, IsExactAtItsPoints) {
-  for (const SurfaceKind kind : kinds) {
-    for (const double beta : betas) {
-      const auto points = random_points(1, 16);
-      const auto surface = through(points, kind, beta);
-      for (const auto& point : points) {
-        EXPECT_EQ(surface.at(point.film_point), point.value) << name(kind) << beta;
-        const float x = static_cast<float>(point.film_point.x), y = static_cast<float>(point.film_point.y);
-        float value = 0;
-        surface.at(1, &x, &y, &value);
-        EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // rounding moves the position off the point
-      }
-    }
-  }
-}
-
-TEST(MovingLeastSquares, ReproducesPlanes) {
-  for (const double beta : betas) {
-    const double rounding = beta <= 4 ? 1e-13 : 1e-11;
-    auto points = random_points(2, 8);
-    const auto plane = [](const FilmPoint& p) { return 0.3 - 0.7 * p.x + 0.4 * p.y; };
-    for (auto& point : points) point.value = plane(point.film_point);
-    const auto surface = through(points, SurfaceKind::affine, beta);
-    for (const auto& at : random_points(3, 100)) {
-      EXPECT_NEAR(surface.at(at.film_point), plane(at.film_point), rounding) << beta;
-      const float x = static_cast<float>(at.film_point.x), y = static_cast<float>(at.film_point.y);
-      float value = 0;
-      surface.at(1, &x, &y, &value);
-      EXPECT_NEAR(value, plane({x, y}), 1e-7) << beta;
-    }
-  }
-}
-
 TEST(MovingLeastSquares, SlopesAreExactFarFromThePoints) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double beta : betas) {
@@ -198,30 +155,6 @@ TEST(MovingLeastSquares, SlopesEqualFiniteDifferences) {
             << name(kind) << beta;
         EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), tolerance)
             << name(kind) << beta;
-      }
-    }
-  }
-}
-
-TEST(MovingLeastSquares, BatchEqualsSinglePositions) {
-  for (const std::size_t points : {1, 2, 3, 13, 64, 65, 200}) {
-    std::vector<double> x, y;
-    for (const auto& at : random_points(6, 333)) {
-      x.push_back(static_cast<float>(1.5 * at.film_point.x));
-      y.push_back(static_cast<float>(1.5 * at.film_point.y));
-    }
-    const std::vector<float> float_x(x.begin(), x.end()), float_y(y.begin(), y.end());
-    for (const SurfaceKind kind : kinds) {
-      for (const double beta : betas) {
-        const auto surface = through(random_points(7, points), kind, beta);
-        std::vector<double> values(x.size());
-        std::vector<float> floats(x.size());
-        surface.at(x.size(), x.data(), y.data(), values.data());
-        surface.at(x.size(), float_x.data(), float_y.data(), floats.data());
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          EXPECT_EQ(surface.at({x[i], y[i]}), values[i]) << name(kind) << beta;
-          EXPECT_EQ(floats[i], static_cast<float>(values[i])) << name(kind) << beta;
-        }
       }
     }
   }

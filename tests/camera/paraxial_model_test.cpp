@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -26,8 +25,6 @@ namespace paraxial_model_test {
 
 using camera_detail::ParaxialModel;
 
-constexpr std::array first_order_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc,
-                                        ModelKind::thick};
 const double film_24x36 = std::hypot(18, 12);
 
 /// A line in image space.
@@ -90,16 +87,6 @@ Ray<double> exact(const Lens& lens, const Line& l, std::size_t wavelength = 0) {
   return end.ray;
 }
 
-std::vector<Line> random_lines(int count, double film, double pupil, unsigned seed = 5) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> one(-1, 1);
-  std::vector<Line> lines;
-  for (int i = 0; i < count; ++i) {
-    lines.push_back({film * one(random), film * one(random), pupil * one(random), pupil * one(random)});
-  }
-  return lines;
-}
-
 /// A lens telecentric in image space: the stop lies in the front focal plane.
 Prescription telecentric() {
   Prescription p;
@@ -143,79 +130,6 @@ TEST(ParaxialModel, ErrorIsOfThirdOrderInTheHeight) {
   }
 }
 
-TEST(ParaxialModel, FocusedPointsHavePointImages) {
-  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700, {FocusCriterion::min_rms});
-  const auto data = testing::cardinal_points(ParaxialModel(ModelKind::thick, lens, film_24x36));
-  const double behind = lens.film_z() - data.rear_principal_z;
-  const double z = data.front_principal_z - 1 / (1 / data.focal_length - 1 / behind);
-  EXPECT_NEAR(z, -700, 1);
-  for (const ModelKind model : first_order_models) {
-    const ParaxialModel thick(model, lens, film_24x36);
-    const auto rays = to_scene(thick, {{10, -5, 0, 0}, {10, -5, 12, 3}, {10, -5, -20, 8}});
-    const auto point = meet(rays[0].ray, z);
-    for (const auto& [ray, fate] : rays) {
-      EXPECT_EQ(fate, RayFate::transmitted);
-      EXPECT_NEAR(meet(ray, z)[0], point[0], 1e-9);
-      EXPECT_NEAR(meet(ray, z)[1], point[1], 1e-9);
-      EXPECT_LT(ray.direction.z, 0);
-      EXPECT_NEAR(glm::length(ray.direction), 1, 1e-15);
-    }
-    // The image is inverted; the magnification is the ratio of the distances from the principal points.
-    const double magnification = behind / (z - data.front_principal_z);
-    EXPECT_NEAR(point[0], 10 / magnification, 1e-9);
-  }
-}
-
-TEST(ParaxialModel, ToFilmInvertsToScene) {
-  for (const char* id : {"tessar_100mm_f2.8", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
-    const Lens lens = testing::data_lens(id);
-    for (const ModelKind name : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
-      const ParaxialModel model(name, lens, 5);
-      const auto lines = random_lines(20, 5, 3);
-      const auto rays = to_scene(model, lines);
-      for (std::size_t i = 0; i < lines.size(); ++i) {
-        // The ray may start anywhere on its line.
-        const Ray<double> ray{rays[i].ray.origin + 37.0 * rays[i].ray.direction, -rays[i].ray.direction};
-        const Back back = to_film(model, ray);
-        EXPECT_EQ(back.fate, RayFate::transmitted);
-        EXPECT_NEAR(back.line.fx, lines[i].fx, 1e-10);
-        EXPECT_NEAR(back.line.fy, lines[i].fy, 1e-10);
-        const auto middle = model.pupils().middle({lines[i].fx, lines[i].fy});
-        EXPECT_NEAR(back.line.px, name == ModelKind::pinhole ? middle[0] : lines[i].px, 1e-8);
-        EXPECT_NEAR(back.line.py, name == ModelKind::pinhole ? middle[1] : lines[i].py, 1e-8);
-      }
-    }
-  }
-}
-
-TEST(ParaxialModel, AllModelsExceptPinholeMapLinesEqually) {
-  const Lens lens = testing::data_lens("retrofocus_100mm_f2");
-  const auto lines = random_lines(10, 20, 10);
-  const auto thick = to_scene(ParaxialModel(ModelKind::thick, lens, film_24x36), lines);
-  for (const ModelKind model : {ModelKind::thin, ModelKind::thin_two_disc}) {
-    const auto rays = to_scene(ParaxialModel(model, lens, film_24x36), lines);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      EXPECT_EQ(rays[i].ray.origin, thick[i].ray.origin);
-      EXPECT_EQ(rays[i].ray.direction, thick[i].ray.direction);
-    }
-  }
-}
-
-TEST(ParaxialModel, PinholeIgnoresThePupilSample) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const ParaxialModel pinhole(ModelKind::pinhole, lens, film_24x36), thick(ModelKind::thick, lens, film_24x36);
-  const auto middle = thick.pupils().middle({4, -9});
-  const auto rays = to_scene(pinhole, {{4, -9, 0, 0}, {4, -9, 25, -3}});
-  const auto chief = to_scene(thick, {{4, -9, middle[0], middle[1]}})[0].ray;
-  EXPECT_EQ(rays[0].ray.direction, rays[1].ray.direction);
-  EXPECT_NEAR(glm::length(rays[0].ray.direction - chief.direction), 0, 1e-14);
-  // Every ray passes through the centre of the entrance pupil.
-  EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[0], 0, 1e-11);
-  EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[1], 0, 1e-11);
-  // The sampled pupil and its exposure equal the thick lens.
-  EXPECT_EQ(pinhole.pupils().area({4, -9}), thick.pupils().area({4, -9}));
-}
-
 // With the exit pupil at infinity, every film point sees the same disc parallel to the axis.
 TEST(ParaxialModel, HandlesPupilsAtInfinity) {
   const Lens lens = compile(telecentric());
@@ -238,105 +152,6 @@ TEST(ParaxialModel, HandlesPupilsAtInfinity) {
   EXPECT_LT(std::abs(to_scene(turned, {{0, 1, 0, 0}})[0].ray.origin.z), 1e-9);
   EXPECT_NEAR(to_film(turned, {{0, 3, -50}, {0, 0, 1}}).line.fy,
               -3 * 120 / first_order(compile(reversed)).effective_focal_length, 1e-9);
-}
-
-/// Symmetric difference from the exact pupils divided by their area, mean over the film.
-double shape_error(const Lens& lens, double film_radius, const FilmPupilTable& pupils) {
-  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
-  constexpr int fields = 16, samples = 1024;
-  double sum = 0;
-  for (int j = 0; j < fields; ++j) {
-    const FilmPoint film{0, film_radius * std::sqrt((j + 0.5) / fields)};
-    int missed = 0, added = 0;
-    for (int k = 0; k < samples; ++k) {
-      const double u = (k + 0.5) / samples, v = std::fmod(k * std::numbers::phi, 1.0);
-      const PupilSample s = real.sample(film, u, v), m = pupils.sample(film, u, v);
-      missed += !pupils.contains(film, s.x, s.y);
-      added += !real.contains(film, m.x, m.y);
-    }
-    sum += (missed + added * pupils.area(film) / real.area(film)) / samples;
-  }
-  return sum / fields;
-}
-
-TEST(ParaxialModel, TwoDiscsFitTheExactPupils) {
-  struct Case {
-    const char* id;
-    double film_radius, bound;
-  };
-  for (const auto& [id, film_radius, bound] :
-       {Case{"double_gauss_100mm_f2.0", film_24x36, 0.009}, Case{"double_gauss_100mm_f1.35", film_24x36, 0.021},
-        Case{"tessar_100mm_f3.5", film_24x36, 0.018}, Case{"fisheye_10mm_f4", 11, 0.024}}) {
-    const Lens lens = testing::data_lens(id);
-    const double fitted =
-        shape_error(lens, film_radius, ParaxialModel(ModelKind::thin_two_disc, lens, film_radius).pupils());
-    const double one_disc = shape_error(lens, film_radius, ParaxialModel(ModelKind::thick, lens, film_radius).pupils());
-    EXPECT_LT(fitted, bound) << id;
-    EXPECT_LT(fitted, one_disc / 4) << id;
-  }
-}
-
-TEST(ParaxialModel, HasAMapForEveryWavelength) {
-  const Prescription prescription = testing::data_prescription("achromat_100mm");
-  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
-  const std::array lines_nm{486.1327, 587.5618, 656.2725};
-  const CompileOptions options{.glasses = &glasses, .missing_glass = MissingGlass::abbe};
-  const Lens lens = compile(prescription, lines_nm, options);
-  const ParaxialModel model(ModelKind::thick, lens, 10);
-  const auto lines = random_lines(33, 10, 5);
-  std::vector<std::uint16_t> each;
-  for (std::size_t i = 0; i < lines.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * 7 % 3));
-  const auto mixed = to_scene(model, lines, {.each = each.data()});
-  for (std::size_t w = 0; w < 3; ++w) {
-    const Lens alone = with_film(compile(prescription, std::array{lines_nm[w]}, options), lens.film_z());
-    const FilmPupilTable pupils = ParaxialModel(ModelKind::thick, alone, 10).pupils();
-    const auto same = to_scene(model, lines, {.all = w});
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (each[i] != w) continue;
-      EXPECT_NEAR(glm::length(mixed[i].ray.direction - same[i].ray.direction), 0, 1e-15);
-      const Back back = to_film(model, {mixed[i].ray.origin, -mixed[i].ray.direction}, w);
-      EXPECT_NEAR(back.line.px, lines[i].px, 1e-9);
-    }
-    EXPECT_NEAR(model.pupils().area({0, 3}, w), pupils.area({0, 3}), 1e-3 * pupils.area({0, 3}));
-  }
-  // Chromatic aberration separates the wavelengths.
-  EXPECT_GT(glm::length(to_scene(model, lines, {.all = 0})[0].ray.direction -
-                        to_scene(model, lines, {.all = 2})[0].ray.direction),
-            1e-6);
-}
-
-TEST(ParaxialModel, HasTwoSectionsForEveryWavelength) {
-  const Lens lens = compile(testing::data_prescription("anamorphic_60mm_2x"), std::array{450.0, 550.0, 650.0},
-                            {.missing_glass = MissingGlass::abbe});
-  for (const ModelKind kind : {ModelKind::thin, ModelKind::thick}) {
-    const ParaxialModel model(kind, lens, 10);
-    const auto lines = random_lines(133, 10, 5);
-    std::vector<std::uint16_t> each;
-    for (std::size_t i = 0; i < lines.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * 7 % 3));
-    const auto mixed = to_scene(model, lines, {.each = each.data()});
-    for (std::size_t w = 0; w < 3; ++w) {
-      const auto same = to_scene(model, lines, {.all = w});
-      for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (each[i] != w) continue;
-        EXPECT_NEAR(glm::length(mixed[i].ray.origin - same[i].ray.origin), 0, 1e-12) << name(kind);
-        EXPECT_NEAR(glm::length(mixed[i].ray.direction - same[i].ray.direction), 0, 1e-14) << name(kind);
-      }
-    }
-  }
-}
-
-TEST(ParaxialModel, FloatAndBatchesEqualSingleRays) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const ParaxialModel model(ModelKind::thick, lens, film_24x36);
-  const auto lines = random_lines(131, 20, 20);
-  const auto all = to_scene(model, lines), single = to_scene<float>(model, lines);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto one = to_scene(model, {lines[i]})[0];
-    EXPECT_NEAR(glm::length(one.ray.direction - all[i].ray.direction), 0, 4e-16);
-    EXPECT_NEAR(glm::length(one.ray.origin - all[i].ray.origin), 0, 1e-13);
-    EXPECT_NEAR(glm::length(single[i].ray.direction - all[i].ray.direction), 0, 1e-6);
-    EXPECT_NEAR(glm::length(single[i].ray.origin - all[i].ray.origin), 0, 1e-4);
-  }
 }
 
 TEST(ParaxialModel, InvalidNumbersGiveFatesAndFiniteRays) {
@@ -363,14 +178,6 @@ TEST(ParaxialModel, InvalidNumbersGiveFatesAndFiniteRays) {
     EXPECT_TRUE(std::isfinite(back.line.fx + back.line.fy + back.line.px + back.line.py));
   }
   EXPECT_EQ(to_film(model, {{0, 0, -5}, {0, 0, 1}}, 1).fate, RayFate::missed_surface);
-}
-
-TEST(ParaxialModel, ClosedStopHasNoPupil) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
-  for (const ModelKind model : first_order_models) {
-    EXPECT_EQ(ParaxialModel(model, shut, film_24x36).pupils().area({0, 5}), 0) << name(model);
-  }
 }
 
 // A triangle shows the orientation. Stopped down, the pupils of the exact lens are first-order images of the stop.

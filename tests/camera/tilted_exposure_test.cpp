@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <ostream>
 #include <random>
 #include <string>
@@ -211,41 +210,6 @@ TEST(TiltedFilm, TelecentricExposureEqualsTracedRays) {
                 {.radius = 102.16, .thickness = 4, .medium = {.nd = 1.5168}, .semi_diameter = 30},
                 {.radius = -102.16, .thickness = 98.6, .semi_diameter = 30}};
   expect_exposures(compile(p), tilted_by({.width_mm = 20, .height_mm = 20}, 15, -10));
-}
-
-TEST(TiltedFilm, OneDiscModelsHaveTheExposureOfTheirDisc) {
-  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8"}) {
-    const Lens lens = testing::data_lens(id);
-    const Pupils paraxial = pupils(lens);
-    const Film film = tilted_by(id[0] == 'f' ? square : shifted, -12, 16);
-    const Film pose = pose_of(lens, film);
-    struct Disc {
-      double z, radius;
-    };
-    // The radius gives the centre of the film the irradiance of the exact lens.
-    const auto disc_at = [&](double z) -> Disc {
-      const double sine2 = film_irradiance(lens, {}) / std::numbers::pi;
-      return {z, std::abs(z - lens.film_z()) * std::sqrt(sine2 / (1 - sine2))};
-    };
-    const Disc exit = disc_at(paraxial.exit.z), folded = disc_at(first_order(lens).rear_principal_z);
-    for (const auto& [model, disc] :
-         {std::pair{ModelKind::pinhole, exit}, std::pair{ModelKind::thick, exit}, std::pair{ModelKind::thin, folded}}) {
-      const Camera camera(lens, film, {.model = model});
-      for (const FilmPoint& point : {FilmPoint{0, 0}, film.point(0, 0), film.point(film.columns, film.rows)}) {
-        double wanted = 0;
-        constexpr int rings = 200, spokes = 200;
-        for (int i = 0; i < rings * spokes; ++i) {
-          const double r = disc.radius * std::sqrt((i % rings + 0.5) / rings),
-                       angle = 2 * std::numbers::pi * (i / rings) / spokes;
-          const Vec3<double> along =
-              Vec3<double>{r * std::cos(angle), r * std::sin(angle), disc.z} - pose.position(point);
-          wanted += along.z * glm::dot(along, pose.normal()) / std::pow(glm::dot(along, along), 2) / (rings * spokes);
-        }
-        wanted *= std::numbers::pi * disc.radius * disc.radius;
-        EXPECT_NEAR(mean_weight(camera, point) / wanted, 1, 3e-3) << id << ' ' << name(model) << " at " << point.x;
-      }
-    }
-  }
 }
 
 // Tilt changes the exposure error of each model by less than 0.8 %.

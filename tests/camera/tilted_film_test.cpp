@@ -4,19 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <string>
 #include <vector>
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "../low_discrepancy.hpp"
 #include "camera/ray_model.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
-#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
@@ -33,7 +30,6 @@ using testing::expect_error;
 
 using testing::pose_of;
 using testing::random_samples;
-using testing::Samples;
 using testing::shifted;
 using testing::tilted_by;
 using testing::wide;
@@ -44,7 +40,7 @@ TEST(TiltedFilm, TinyTiltEqualsUprightFilm) {
   for (const ModelKind model : models()) {
     const Camera upright(lens, shifted, {.model = model});
     const Camera tilted(lens, tilted_by(shifted, 1e-9, -1e-9), {.model = model});
-    const core_detail::Kronecker<2> random(3);
+    const testing::Kronecker<2> random(3);
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-20.5, 17.5}, FilmPoint{14, -5}}) {
       double weights[2] = {0, 0}, area[2] = {0, 0};
       constexpr std::uint32_t count = 4096;
@@ -60,48 +56,6 @@ TEST(TiltedFilm, TinyTiltEqualsUprightFilm) {
       EXPECT_NEAR(weights[1] / weights[0], 1, 1e-3) << name(model);
       EXPECT_NEAR(area[1] / area[0], 1, 1e-3) << name(model);
     }
-    // Lines and weights are equal.
-    const TiltedFilm film(tilted.film(), CameraParts(lens, tilted.film(), model).pupils());
-    for (std::uint32_t i = 0; i < 100; ++i) {
-      const auto [x, y] = random(i);
-      const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows),
-                      key = film.plane(0).virtual_point(point);
-      EXPECT_NEAR(std::hypot(key.x - point.x, key.y - point.y), 0, 1e-8);
-      EXPECT_NEAR(film.plane(0).weight(key, {10 * x, -10 * y}), 1, 1e-8);
-      const TwoPlaneRay line = film.plane(0).upright(key, {10 * x, -10 * y});
-      EXPECT_NEAR(std::hypot(line.film_x - point.x, line.film_y - point.y), 0, 1e-8);
-    }
-  }
-}
-
-// Virtual film point, line and weight equal the values derived from positions in space.
-TEST(TiltedFilm, LinesEqualPositionsInSpace) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  Film film = tilted_by(shifted, 14, -9);
-  film.travel_mm = -2.5;
-  const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
-  const TiltedFilm tilted(film, pupils);
-  const core_detail::Kronecker<5> random(8);
-  for (std::uint32_t i = 0; i < 200; ++i) {
-    const auto [a, b, c, d, time] = random(i);
-    const camera_detail::TiltedPlane plane = tilted.plane(time);
-    const Film pose = pose_of(lens, film).at(time);
-    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = plane.virtual_point(point);
-    const Vec3<double> place = pose.position(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
-    const TwoPlaneRay line = plane.upright(key, {q.x, q.y});
-    const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
-    const Vec3<double> along = q - place, straight = q - upright, normal = pose.normal();
-    EXPECT_NEAR(glm::length(glm::cross(glm::normalize(along), glm::normalize(straight))), 0, 1e-14);
-    const double length2 = glm::dot(along, along), straight2 = glm::dot(straight, straight);
-    const double weight = along.z * glm::dot(along, normal) / (length2 * length2);
-    const double wanted = straight.z * straight.z / (straight2 * straight2);
-    EXPECT_NEAR(plane.weight(key, {q.x, q.y}) * wanted / weight, 1, 1e-12);
-    EXPECT_NEAR((1 + plane.distance_excess(key)) * (q.z - place.z) / (q.z - upright.z), 1, 1e-12);
-    const auto met = plane.virtual_point_of(line);
-    ASSERT_TRUE(met);
-    EXPECT_NEAR(std::hypot(met->x - key.x, met->y - key.y), 0, 1e-12);
-    const FilmPoint again = plane.point(*met);
-    EXPECT_NEAR(std::hypot(again.x - point.x, again.y - point.y), 0, 1e-12);
   }
 }
 
@@ -156,17 +110,6 @@ TEST(TiltedFilm, DensitiesEqualPositionsInSpace) {
     }
     EXPECT_GT(checked, model == ModelKind::pinhole ? -1 : 50) << name(model);
   }
-}
-
-TEST(TiltedFilm, BackSideReceivesNoLight) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const Film film = tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0);
-  const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
-  const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
-  EXPECT_GT(tilted.plane(0).weight({0, 0}, {0, 0.99 * -reach}), 0);
-  EXPECT_TRUE(tilted.plane(0).virtual_point_of({0, 0, 0, 0.99 * -reach}));
-  EXPECT_EQ(tilted.plane(0).weight({0, 0}, {0, 1.01 * -reach}), 0);
-  EXPECT_FALSE(tilted.plane(0).virtual_point_of({0, 0, 0, 1.01 * -reach}));
 }
 
 TEST(TiltedFilm, RaysFromBehindHaveNoWeight) {
@@ -235,26 +178,6 @@ TEST(TiltedFilm, RefusesFilmsInsideTheLens) {
   expect_error(camera(gauss, tilted_by(wide, std::nan(""), 0)), {"film", "tilt_rad", "nan"});
   expect_error(camera(fisheye, tilted_by({.width_mm = 20, .height_mm = 20}, 45, 0), ModelKind::thin),
                {"corner", -10, "pupil"});
-}
-
-TEST(TiltedFilm, PartsOfACameraRefuseTheSameFilms) {
-  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const Film film = tilted_by(wide, 20, 0), beyond = tilted_by(wide, 91, 0);
-  const Film flipped = tilted_by({.width_mm = -36, .height_mm = 24}, 20, 0);
-  const Film unknown = tilted_by({.width_mm = std::nan(""), .height_mm = 24}, 0, 0);
-  const Film close = tilted_by({.width_mm = 36, .height_mm = 300}, 60, 0);
-  const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
-  const std::vector<std::pair<Film, std::vector<testing::Token>>> refused{{beyond, {"tilt_rad", radians(91.0)}},
-                                                                          {flipped, {"width_mm", -36}},
-                                                                          {unknown, {"width_mm", "nan"}},
-                                                                          {close, {"corner", -18, -150}}};
-  for (const auto& [wrong, tokens] : refused) {
-    expect_error([&film = wrong, &lens] { upright_radius(lens, film, ModelKind::exact_double); }, tokens);
-    expect_error([&film = wrong, &pupils] { TiltedFilm(film, pupils); }, tokens);
-  }
-  EXPECT_NO_THROW(TiltedFilm(film, pupils));
-  const Film larger = tilted_by({.width_mm = 50, .height_mm = 24}, 20, 0);
-  expect_error([&] { TiltedFilm(larger, pupils); }, {"pupils", pupils.film_radius()});
 }
 
 }  // namespace tilted_film_test

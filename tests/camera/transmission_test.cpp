@@ -2,8 +2,6 @@
 // Weights of cameras with and without the light that surfaces reflect.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -64,36 +62,6 @@ TEST(Transmission, OfExactRaysIsThatOfTheLens) {
         }
       }
       EXPECT_GT(rays, 100);
-    }
-  }
-}
-
-TEST(Transmission, OfABatchIsThatOfItsRays) {
-  const Lens lens = double_gauss();
-  constexpr std::size_t count = 300;
-  for (const ModelKind model : {ModelKind::exact_float, ModelKind::thick, ModelKind::thin_two_disc, ModelKind::pinhole,
-                                ModelKind::polynomial(5)}) {
-    const Camera camera(lens, still, with_light(model));
-    std::vector<float> in[4], nm, out[7];
-    std::vector<RayFate> fates(count);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const CameraSample s = drawn(k, still);
-      in[0].push_back(static_cast<float>(s.film.x)), in[1].push_back(static_cast<float>(s.film.y));
-      in[2].push_back(static_cast<float>(s.pupil_u)), in[3].push_back(static_cast<float>(s.pupil_v));
-      nm.push_back(450 + static_cast<float>(k) / 2);
-    }
-    for (auto& values : out) values.resize(count);
-    camera.sample<float>(count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), {.each_nm = nm.data()}},
-                         {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
-                          out[6].data(),
-                          fates.data()});
-    for (std::size_t k = 0; k < count; ++k) {
-      const CameraRay one = camera.sample({.film = {in[0][k], in[1][k]},
-                                           .pupil_u = in[2][k],
-                                           .pupil_v = in[3][k],
-                                           .wavelength = Wavelength::nm(nm[k])});
-      if (one.fate != fates[k]) continue;  // at an edge, in float
-      EXPECT_NEAR(out[6][k], one.weight, 1e-3 * one.weight) << name(model) << ' ' << k;
     }
   }
 }

@@ -9,7 +9,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/low_discrepancy.hpp"
+#include "../low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
@@ -41,7 +41,7 @@ TEST(TwoDiscs, AreControlsOfACamera) {
     double sum = 0;
     constexpr std::size_t count = 4096;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      const auto [u, v] = testing::fibonacci_point(i, count);
       sum += camera.sample({.film = {x, 0}, .pupil_u = u, .pupil_v = v}).weight / count;
     }
     return sum;
@@ -60,7 +60,7 @@ double beam_radius(const Camera& camera) {
   double largest = 0;
   constexpr std::size_t count = 16384;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [u, v] = core_detail::fibonacci_point(i, count);
+    const auto [u, v] = testing::fibonacci_point(i, count);
     const CameraRay ray = camera.sample({.film = {0, 0}, .pupil_u = u, .pupil_v = v});
     if (ray.weight > 0) largest = std::max(largest, std::hypot(ray.ray.origin.x, ray.ray.origin.y));
   }
