@@ -58,8 +58,8 @@ if [ "${1-}" = --report ]; then
   trap 'rm -rf "$work"' EXIT
   by_type='float;double;batch float, fast / reproducible;batch double, fast / reproducible'
   printf '\nAccuracy'
-  table "$by_type" 'lens/Quadric*' 'lens/Asphere*' 'lens/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
-    'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*EqualsExactRays' \
+  table "$by_type" 'lens/Quadric*' 'lens/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
+    'trace/Laws*' 'trace/DifferentialsOf*EqualsExactRays' \
     'trace/DifferentialsOf*-*EqualsExactRays' 'pupil/Aim*'
   printf '\nLimits'
   table "$by_type" 'trace/Extremes*'

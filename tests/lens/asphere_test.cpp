@@ -7,13 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "../asphere_scan.hpp"
-#include "../report.hpp"
 #include "petzval/pupil/apertures.hpp"
 
 namespace asphere_test {
@@ -73,76 +71,6 @@ petzval::Lens compiled(const SurfaceRow& r) {
   p.name = "asphere";
   p.surfaces = {r};
   return petzval::compile(p);
-}
-
-template <class T>
-class AsphereOf : public testing::Test {};
-using Plain = testing::Types<float, double>;
-TYPED_TEST_SUITE(AsphereOf, Plain);
-
-TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
-  const double eps = std::numeric_limits<TypeParam>::epsilon();
-  double most = 0;
-  int several = 0;
-  for (const auto& [name, r] : surfaces()) {
-    const petzval::Lens lens = compiled(r);
-    const auto view = petzval::kernel::view<TypeParam>(lens);
-    const Asphere<TypeParam>& asphere = view.aspheres[0];
-    const double rim = *r.semi_diameter;
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    int lost = 0, wrong = 0, doubtful = 0, inaccurate = 0;
-    constexpr int rays = 10000;
-    for (int i = 0; i < rays; ++i) {
-      const double reach = rim * std::sqrt(uniform(random)), turn = 6.3 * uniform(random);
-      const double slope = 0.9 * uniform(random), heading = 6.3 * uniform(random);
-      const int sense = i % 2 ? 1 : -1;
-      const Vec<TypeParam> d{static_cast<TypeParam>(slope * std::cos(heading)),
-                             static_cast<TypeParam>(slope * std::sin(heading)),
-                             static_cast<TypeParam>(sense * std::sqrt(1 - slope * slope))};
-      const Vec<TypeParam> target{static_cast<TypeParam>(reach * std::cos(turn)),
-                                  static_cast<TypeParam>(reach * std::sin(turn)),
-                                  static_cast<TypeParam>(Sag{r}.value(reach))};
-      const Vec<TypeParam> start = target - d * static_cast<TypeParam>(rim);
-      const Vec<double> p{start.x, start.y, start.z}, direction{d.x, d.y, d.z};
-      const auto crossings = scan(r, rim, p, direction, sense);
-      if (!crossings) {
-        ++doubtful;
-        continue;
-      }
-      const auto [point, hit, converged, beside] = intersect(asphere, start, d, static_cast<TypeParam>(sense));
-      EXPECT_TRUE(converged) << name << " ray " << i;
-      const bool inside = hit && std::hypot(point.x, point.y) <= rim * (1 + 4 * eps);
-      several += crossings->size() > 1;
-      if (crossings->empty()) {
-        wrong += inside && std::hypot(point.x, point.y) < rim * (1 - 16 * eps);
-        continue;
-      }
-      if (!inside) {
-        const auto& [t, c] = crossings->front();
-        const double radius = std::hypot(p.x + t * direction.x, p.y + t * direction.y);
-        lost += radius < rim * (1 - 8 * eps);
-        continue;
-      }
-      const auto& [t, cosine] = crossings->front();
-      const double error = std::hypot(point.x - (p.x + t * direction.x), point.y - (p.y + t * direction.y),
-                                      point.z - (p.z + t * direction.z));
-      // A larger error belongs to another crossing.
-      if (error > 1e-3 * rim) {
-        ++wrong;
-      } else {
-        most = std::max(most, error * cosine / (eps * rim));
-        inaccurate += error * cosine > 4 * eps * rim;
-      }
-    }
-    EXPECT_EQ(lost, 0) << name;
-    EXPECT_EQ(wrong, 0) << name;
-    EXPECT_EQ(inaccurate, 0) << name << ", worst " << most;
-    EXPECT_LT(doubtful, rays / 10) << name;
-  }
-  EXPECT_GT(several, 50) << "the rays are too easy";
-  testing_report::put("first crossing of steep rays with aspheres, x cos(incidence)",
-                      testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
 Asphere<double> described(const SurfaceRow& row) { return petzval::kernel::view<double>(compiled(row)).aspheres[0]; }

@@ -11,7 +11,6 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "core/text.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/pupil/apertures.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/text.hpp"
 #include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"

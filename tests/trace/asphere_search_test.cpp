@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hits of batches on surfaces that steep rays cross several times, compared with a scan in long double.
+// The hits of single rays and batches on surfaces that steep rays cross several times, compared with a scan in long
+// double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,26 +66,31 @@ void judge(const petzval::SurfaceRow& row, std::mt19937& random, const std::stri
       count.doubtful += !crossings.back();
       count.several += crossings.back() && crossings.back()->size() > 1;
     }
+    const auto check = [&](std::size_t i, RayFate fate, const petzval::Vec3<double>& hit, const std::string& how) {
+      count.unsettled += fate == RayFate::no_convergence;
+      if (!crossings[i]) return;
+      const petzval::Vec3<double> o(rays[i].origin), d(rays[i].direction);
+      const bool transmitted = fate == RayFate::transmitted;
+      bool right = !(transmitted && std::hypot(hit.x, hit.y) < height * (1 - 1e-5));
+      if (!crossings[i]->empty()) {
+        const petzval::Vec3<double> point = o + d * crossings[i]->front().t;
+        if (std::hypot(point.x, point.y) > height * (1 - 1e-5)) return;
+        const petzval::Vec3<double> off = hit - point;
+        right = transmitted && std::hypot(off.x, off.y, off.z) < 1e-3 * height;
+      }
+      if (!right && ++count.wrong <= 10) {
+        ADD_FAILURE() << what << ", " << how << ", ray " << i << ": " << petzval::name(fate) << " at " << hit.x << " "
+                      << hit.y << " " << hit.z;
+      }
+    };
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto one = petzval::trace(lens, rays[i], {.travel = travel});
+      check(i, one.fate, petzval::Vec3<double>(one.ray.origin), "one ray");
+    }
     for (const auto& options : testing_batches::every_batch(travel)) {
       const auto answer = traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        count.unsettled += answer.fates[i] == RayFate::no_convergence;
-        if (!crossings[i]) continue;
-        const petzval::Vec3<double> o(rays[i].origin), d(rays[i].direction), hit(answer.rays[i].origin);
-        const bool transmitted = answer.fates[i] == RayFate::transmitted;
-        const bool inside = transmitted && std::hypot(hit.x, hit.y) < height * (1 - 1e-5);
-        bool right = !inside;
-        if (!crossings[i]->empty()) {
-          const auto& [t, cosine] = crossings[i]->front();
-          const petzval::Vec3<double> point = o + d * t;
-          if (std::hypot(point.x, point.y) > height * (1 - 1e-5)) continue;
-          const petzval::Vec3<double> off = hit - point;
-          right = transmitted && std::hypot(off.x, off.y, off.z) < 1e-3 * height;
-        }
-        if (!right && ++count.wrong <= 10) {
-          ADD_FAILURE() << what << ", " << testing_batches::text(options) << ", ray " << i << ": "
-                        << petzval::name(answer.fates[i]) << " at " << hit.x << " " << hit.y << " " << hit.z;
-        }
+        check(i, answer.fates[i], petzval::Vec3<double>(answer.rays[i].origin), testing_batches::text(options));
       }
     }
   }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "batches.hpp"
-#include "petzval/core/parallel.hpp"
 
 namespace batch_test {
 
@@ -238,47 +237,6 @@ TYPED_TEST(BatchOf, InvalidRaysAreMissesAndDoNotChangeOtherLanes) {
             EXPECT_EQ(answer.surfaces[lane], first_met(sample.lens, travel)) << text(options) << " lane " << lane;
           }
         }
-      }
-    }
-  }
-}
-
-TYPED_TEST(BatchOf, InvalidRaysHaveTheFateOfSingleRays) {
-  using T = TypeParam;
-  const auto rays = absurd_rays<T>();
-  for (const auto& sample : telling()) {
-    for (const Travel travel : both_ways) {
-      for (const BatchOptions& options : every_batch(travel)) {
-        const Answer<T> answer = traced(sample.lens, rays, options);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          if (!refused(rays[i])) continue;
-          EXPECT_EQ(answer.fates[i], RayFate::missed_surface) << sample.id << " " << text(options) << " ray " << i;
-          EXPECT_EQ(answer.surfaces[i], first_met(sample.lens, travel)) << sample.id << " " << text(options);
-        }
-      }
-    }
-  }
-}
-
-TYPED_TEST(BatchOf, ThreadsDoNotChangeABit) {
-  using T = TypeParam;
-  for (const auto& sample : telling()) {
-    const auto rays = rays_for<T>(sample, Travel::to_film, 1000);
-    const Arrays<T> in(rays);
-    for (const BatchOptions& options : every_batch()) {
-      const petzval::InstructionSet set = petzval::batch_instruction_set();
-      const Answer<T> wanted = traced(sample.lens, rays, options);
-      for (const int threads : {1, 3}) {
-        Answer<T> found{Arrays<T>(rays.size()), std::vector<RayFate>(rays.size()), std::vector<int>(rays.size())};
-        petzval::parallel_for(rays.size(), 192, threads, [&](std::size_t begin, std::size_t end) {
-          petzval::limit_batches(set);
-          const auto from = [&](auto a) {
-            return decltype(a){a.x + begin, a.y + begin, a.z + begin, a.dx + begin, a.dy + begin, a.dz + begin};
-          };
-          petzval::trace<T>(sample.lens, end - begin, from(in.in()), from(found.rays.out()), found.fates.data() + begin,
-                            found.surfaces.data() + begin, options);
-        });
-        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(found, i, wanted, i)) << text(options);
       }
     }
   }

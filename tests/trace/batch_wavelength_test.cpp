@@ -231,24 +231,6 @@ TYPED_TEST(BatchWavelengths, InNmHaveEqualBitsInBatchesAndSingleRays) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, CompiledWavelengthsInNmEqualTheirIndices) {
-  using T = TypeParam;
-  const auto sample = colourful(testing_lenses::load("modern_58mm_f0.95"));
-  const auto rays = rays_for<T>(sample, Travel::to_film, 333);
-  for (BatchOptions options : every_batch()) {
-    for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
-      options.wavelengths = {Wavelength(w)};
-      const auto wanted = traced(sample.lens, rays, options);
-      options.wavelengths = {Wavelength::nm(wavelengths_nm[w])};
-      const auto found = traced(sample.lens, rays, options);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_EQ(found.fates[i], wanted.fates[i]) << text(options) << " ray " << i;
-        ASSERT_LT(apart(found.rays[i], wanted.rays[i], sample.size), sizeof(T) == 4 ? 1e-4 : 1e-7) << text(options);
-      }
-    }
-  }
-}
-
 TYPED_TEST(BatchWavelengths, InNmHaveDerivatives) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("modern_58mm_f0.95"));

@@ -13,8 +13,8 @@
 #include <limits>
 #include <string>
 
+#include "../digits.hpp"
 #include "../report.hpp"
-#include "core/text.hpp"
 #include "differentials.hpp"
 #include "extended.hpp"
 
@@ -183,8 +183,8 @@ void judge_all(const std::vector<testing_lenses::Sample>& samples, const std::st
   }
   for (const Worst& w : worst) EXPECT_LE(w.error, bound) << w.where;
   testing_report::put(row, testing_report::batch<T>,
-                      petzval::to_text(worst[0].error, 2) + " / " + petzval::to_text(worst[1].error, 2),
-                      petzval::to_text(bound) + " eps");
+                      petzval::testing::digits(worst[0].error, 2) + " / " + petzval::testing::digits(worst[1].error, 2),
+                      petzval::testing::digits(bound) + " eps");
 }
 
 TYPED_TEST(DifferentialsOf, EveryLensEqualsExactRays) {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "../digits.hpp"
 #include "../report.hpp"
-#include "core/text.hpp"
 #include "differentials.hpp"
 
 namespace differentials_test {
@@ -46,8 +46,8 @@ class Most {
   void close(const std::string& row, double bound) const {
     for (const bool r : {false, true}) EXPECT_LE(error_[r], bound) << row << ": " << where_[r];
     testing_report::put(row, testing_report::batch<T>,
-                        petzval::to_text(error_[0], 2) + " / " + petzval::to_text(error_[1], 2),
-                        petzval::to_text(bound) + " eps");
+                        petzval::testing::digits(error_[0], 2) + " / " + petzval::testing::digits(error_[1], 2),
+                        petzval::testing::digits(bound) + " eps");
   }
 
  private:

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/text.hpp"
+#include "../digits.hpp"
 #include "limits.hpp"
 
 namespace extremes_test {
@@ -91,7 +91,7 @@ TYPED_TEST(ExtremesOf, EveryRadius) {
   Judge<TypeParam> judge;
   for (const double radius : {1e-9, 1e-6, 1e-3, 1.0, 50.0, 1e3, 1e5, 1e7, 1e12, 1e300, 0.0}) {
     for (const double sign : {1.0, -1.0}) {
-      both_ways(judge, glass(sign * radius), {}, "radius " + petzval::to_text(sign * radius));
+      both_ways(judge, glass(sign * radius), {}, "radius " + petzval::testing::digits(sign * radius));
     }
   }
   judge.close("radius 1e-9 to 1e12 mm and plane", 4);
@@ -105,7 +105,7 @@ TYPED_TEST(ExtremesOf, EveryConic) {
     for (const double radius : {50.0, -50.0, 200.0}) {
       for (const double distance : {5.0, 100.0}) {
         both_ways(judge, glass(radius, k), {.distance = distance},
-                  "k " + petzval::to_text(k) + " radius " + petzval::to_text(radius));
+                  "k " + petzval::testing::digits(k) + " radius " + petzval::testing::digits(radius));
       }
     }
   }
@@ -117,7 +117,7 @@ TYPED_TEST(ExtremesOf, CylindersAndMirrors) {
   for (const double radius : {2.5, -50.0, 1e7}) {
     for (const double k : {-1.5, 0.0, 1.0}) {
       SurfaceRow row = glass(radius, k);
-      const std::string what = "radius " + petzval::to_text(radius) + " k " + petzval::to_text(k);
+      const std::string what = "radius " + petzval::testing::digits(radius) + " k " + petzval::testing::digits(k);
       row.curved_in = Section::x;
       both_ways(judge, row, {}, "cylinder in x, " + what);
       row.curved_in = Section::y;
@@ -144,7 +144,8 @@ TYPED_TEST(ExtremesOf, Aspheres) {
         asphere(2.2, -1, 2.8, {{4, -0.085}, {6, 0.0075}, {8, -0.0002}}), asphere(1000, 0, 300, {{16, 1e-41}}),
         asphere(0, 0, 3, {{2, 0.5}, {4, -0.15}, {6, 0.0105}})}) {
     const double rim = *row.semi_diameter;
-    both_ways(judge, row, {.height = rim, .slope = 0.8, .distance = rim}, "asphere, rim " + petzval::to_text(rim));
+    both_ways(judge, row, {.height = rim, .slope = 0.8, .distance = rim},
+              "asphere, rim " + petzval::testing::digits(rim));
   }
   judge.close("aspheres, gull wings among them, steep rays", 8);
 }
@@ -169,7 +170,7 @@ TYPED_TEST(ExtremesOf, GrazingRays) {
         rays.push_back(through<TypeParam>({x, y, z}, along, 5));
       }
       judge(lens, rays, Travel::to_film, {.place = 30},
-            "k " + petzval::to_text(k) + " grazing " + petzval::to_text(grazing));
+            "k " + petzval::testing::digits(k) + " grazing " + petzval::testing::digits(grazing));
     }
   }
   judge.close("grazing to 1e-5 rad", 4);
@@ -193,7 +194,7 @@ TYPED_TEST(ExtremesOf, RaysAcrossAndAgainstTheAxis) {
               {std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), side * std::cos(angle)}, 7));
         }
         judge(lens, rays, side > 0 ? Travel::to_film : Travel::to_scene, {.place = 48},
-              petzval::to_text(degrees) + " degrees, radius " + petzval::to_text(radius));
+              petzval::testing::digits(degrees) + " degrees, radius " + petzval::testing::digits(radius));
       }
     }
   }
@@ -206,7 +207,7 @@ TYPED_TEST(ExtremesOf, FarStarts) {
     for (const double distance : {1e2, 1e3, 1e4, 1e6, 1e9}) {
       for (const double slope : {0.3, 20 / distance, 0.0}) {
         both_ways(judge, glass(50, k), {.slope = slope, .distance = distance},
-                  "k " + petzval::to_text(k) + " from " + petzval::to_text(distance));
+                  "k " + petzval::testing::digits(k) + " from " + petzval::testing::digits(distance));
       }
     }
   }
@@ -236,14 +237,15 @@ TEST(Extremes, HitsFromAKilometreAwayLieOnTheSurface) {
     }
   }
   testing_report::put("off the surface, start 1 km away", testing_report::batch<double>,
-                      petzval::to_text(most, 2) + " mm", "2e-14 mm");
+                      petzval::testing::digits(most, 2) + " mm", "2e-14 mm");
 }
 
 TYPED_TEST(ExtremesOf, NearlyEqualIndices) {
   Judge<TypeParam> judge;
   for (const double difference : {1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3, 0.0}) {
     for (const double radius : {50.0, -30.0, 0.0}) {
-      both_ways(judge, glass(radius, 0, 1.5 * (1 + difference)), {}, "indices " + petzval::to_text(difference), 1.5);
+      both_ways(judge, glass(radius, 0, 1.5 * (1 + difference)), {}, "indices " + petzval::testing::digits(difference),
+                1.5);
     }
   }
   judge.close("index ratio to 1 +- 1e-9", 4);
@@ -269,7 +271,7 @@ TYPED_TEST(ExtremesOf, EqualMediaKeepDirectionsWithinOneEps) {
     }
   }
   EXPECT_LE(most, 1);
-  testing_report::put("equal indices, change of direction", testing_report::batch<T>, petzval::to_text(most, 2),
+  testing_report::put("equal indices, change of direction", testing_report::batch<T>, petzval::testing::digits(most, 2),
                       "1 eps");
 }
 
@@ -287,8 +289,8 @@ TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
           p.surfaces = {front, glass(second, 0, 1.5)};
           const Lens lens = petzval::compile(p);
           const Sweep sweep{.height = 18, .slope = 8, .rays = 60};
-          const std::string what = "radii " + petzval::to_text(first) + " " + petzval::to_text(second) + " gap " +
-                                   petzval::to_text(gap) + " n " + petzval::to_text(n);
+          const std::string what = "radii " + petzval::testing::digits(first) + " " + petzval::testing::digits(second) +
+                                   " gap " + petzval::testing::digits(gap) + " n " + petzval::testing::digits(n);
           judge(lens, skew_rays<TypeParam>(front, sweep, 1), Travel::to_film, {.place = 20}, what + " to film");
           auto back = skew_rays<TypeParam>(p.surfaces[1], sweep, -1);
           for (auto& ray : back) ray.origin.z += static_cast<TypeParam>(gap);

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "../digits.hpp"
 #include "../report.hpp"
 #include "batches.hpp"
-#include "core/text.hpp"
 #include "extended.hpp"
 
 /// Compares single rays and batches of both arithmetics on every instruction set with exact rays.
@@ -167,8 +167,8 @@ class Judge {
     EXPECT_EQ(wrong_, 0u) << row << ": fates that no ray within " << eps_beside << " eps has";
     EXPECT_GE(static_cast<double>(measured_), least_measured * static_cast<double>(judged_)) << row;
     for (const Worst& worst : worst_) EXPECT_LE(worst.error, bound) << row << ": " << worst.where;
-    const auto number = [&](std::size_t tracer) { return petzval::to_text(worst_[tracer].error, 2); };
-    const std::string limit = petzval::to_text(bound) + " eps";
+    const auto number = [&](std::size_t tracer) { return petzval::testing::digits(worst_[tracer].error, 2); };
+    const std::string limit = petzval::testing::digits(bound) + " eps";
     testing_report::put(row, testing_report::one_ray<T>, number(0), limit);
     testing_report::put(row, testing_report::batch<T>, number(1) + " / " + number(2), limit);
   }
@@ -183,7 +183,7 @@ class Judge {
   static std::string shown(const Ray<T>& r) {
     std::string text = " (";
     for (const T x : {r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z}) {
-      text += " " + petzval::to_text(static_cast<double>(x));
+      text += " " + petzval::testing::digits(static_cast<double>(x));
     }
     return text + " )";
   }

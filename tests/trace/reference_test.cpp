@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "../digits.hpp"
 #include "../report.hpp"
 #include "batches.hpp"
-#include "core/text.hpp"
 
 namespace reference_test {
 
@@ -105,10 +105,10 @@ TYPED_TEST(ReferenceRays, EqualTheReference) {
     }
   }
   const std::string what = "rays of 14 lenses against 60-digit references, relative";
-  const std::string limit = petzval::to_text(this->bound);
+  const std::string limit = petzval::testing::digits(this->bound);
   testing_report::put(what, testing_report::one_ray<T>, one, limit);
   testing_report::put(what, testing_report::batch<T>,
-                      petzval::to_text(fast, 2) + " / " + petzval::to_text(reproducible, 2), limit);
+                      petzval::testing::digits(fast, 2) + " / " + petzval::testing::digits(reproducible, 2), limit);
 }
 
 }  // namespace reference_test
