@@ -91,20 +91,6 @@ TEST(Autofocus, ExactRaysEqualSolveFocusWithinTheirNoise) {
   }
 }
 
-TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
-  const IdealLens lens = thin_lens(50, 2);
-  const std::vector targets{at(0, 0, -1000), at(200, 0, -3000)};
-  const Autofocus focus = autofocus(lens, targets, film_at(50));
-  ASSERT_TRUE(focus);
-  EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
-  EXPECT_GT(focus.blurs[1].blur_mm, 0);
-  // At the minimum the blurs, weighted by the slopes of their cones, cancel.
-  const double steep = lens.image(targets[0].point)->diameter_per_mm,
-               flat = lens.image(targets[1].point)->diameter_per_mm;
-  EXPECT_NEAR(steep * focus.blurs[0].blur_mm, -flat * focus.blurs[1].blur_mm, 1e-13);
-  EXPECT_NEAR(focus.rms_mm, std::hypot(focus.blurs[0].blur_mm, focus.blurs[1].blur_mm) / std::numbers::sqrt2, 1e-15);
-}
-
 /// The weighted sum of squared blur errors of targets.
 double squares(const Autofocus& focus, const std::vector<FocusTarget>& targets) {
   double sum = 0;

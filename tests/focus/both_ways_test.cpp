@@ -18,7 +18,6 @@ namespace petzval {
 namespace both_ways_test {
 
 using testing::data_lens;
-using testing::data_prescription;
 using testing::data_prescriptions;
 using testing::expect_error;
 using testing::expect_tokens;
@@ -86,43 +85,6 @@ TEST(FocusRoundTrip, ReturnsToTheFilmForFieldsAndColours) {
     expect_round_trips(triplet, {criterion, front_vertex, fields}, 1e-13, {infinity, 100, 10});
     expect_round_trips(triplet, {criterion, film, fields}, 1e-13, {100});
   }
-}
-
-TEST(FocusRoundTrip, ParaxialSubjectIsImagedOnTheFilm) {
-  for (const char* id : {"double_gauss_100mm_f2.0", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
-    const Lens lens = data_lens(id);
-    const FirstOrder data = first_order(lens);
-    for (const double extension : {1e-9, 1e-3, 1.0, 20.0}) {
-      const double film_z = data.rear_focal_z + (data.image_index > 0 ? extension : -extension);
-      const FocusSolution solution = solve_subject(lens, film_z, {paraxial});
-      ASSERT_TRUE(solution);
-      EXPECT_NEAR(paraxial_image_z(lens, solution.subject_z), film_z, 1e-12 * (100 + std::abs(film_z)));
-      EXPECT_NEAR(solution.distance, -solution.subject_z, 4 * eps * solution.distance);
-    }
-  }
-}
-
-TEST(FocusRoundTrip, OriginsDescribeOneSubject) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const FirstOrder data = first_order(lens);
-  for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
-    SCOPED_TRACE(name(criterion));
-    const FocusSolution vertex = solve_focus(lens, 1000, {criterion});
-    const FocusSolution from_plane = solve_focus(lens, 1000 + data.front_principal_z, {criterion, front_principal});
-    const FocusSolution from_film = solve_focus(lens, 1000 + vertex.film_z, {criterion, film});
-    EXPECT_NEAR(from_plane.film_z, vertex.film_z, 1e-11);
-    EXPECT_NEAR(from_film.film_z, vertex.film_z, 1e-11);
-    EXPECT_NEAR(from_film.subject_z, -1000, 1e-9);
-    for (const DistanceOrigin origin : {front_vertex, film, front_principal}) {
-      const FocusSolution back = solve_subject(lens, vertex.film_z, {criterion, origin});
-      EXPECT_NEAR(back.subject_z, -1000, 1e-9);
-      const double from = origin == film ? vertex.film_z : origin == front_principal ? data.front_principal_z : 0;
-      EXPECT_NEAR(back.distance, 1000 + from, 1e-9);
-    }
-  }
-  // From the principal planes: 1 / U + 1 / V = 1 / f.
-  const double v = solve_focus(lens, 400, {paraxial, front_principal}).film_z - data.rear_principal_z;
-  EXPECT_NEAR(1 / 400.0 + 1 / v, 1 / data.effective_focal_length, 1e-16);
 }
 
 TEST(FocusRoundTrip, FilmTooFarInHasNoSubject) {

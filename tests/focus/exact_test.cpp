@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -64,8 +63,9 @@ Spread spread(const Lens& lens, const FieldPoint& point, double film_z, const st
 }
 
 TEST(ExactBlur, EqualsAGridOfRays) {
-  for (const char* id : {"cooke_triplet_50mm_f5", "double_gauss_100mm_f2.0"}) {
+  for (const char* id : {"cooke_triplet_50mm_f5", "double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
     for (const double field : {0.0, radians(8), radians(14)}) {
+      if (field > radians(10) && std::string(id).starts_with("anamorphic")) continue;  // needs more rays
       SCOPED_TRACE(std::string(id) + ' ' + std::to_string(field));
       const Lens lens = data_lens(id);
       const std::vector<FocusField> fields{{field, 1}};
@@ -85,15 +85,22 @@ TEST(ExactBlur, EqualsAGridOfRays) {
 }
 
 TEST(ExactFocus, MinimisesTheBlur) {
-  const std::vector<FocusField> fields{{0, 1}, {radians(10), 2}, {radians(-17), 0.5}};
-  for (const char* id : {"cooke_triplet_50mm_f5", "double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
+  struct Case {
+    const char* id;
+    double field_deg = 10, near_mm = 1500;
+  };
+  for (const auto& [id, field_deg, near_mm] :
+       {Case{"cooke_triplet_50mm_f5"}, Case{"double_gauss_100mm_f2.0"}, Case{"anamorphic_60mm_2x"},
+        Case{"catadioptric_maksutov_1280mm_f14.4", 0.2, 3e4}, Case{"phone_5.6mm_f3.5"}}) {
+    const std::vector<FocusField> fields{{0, 1}, {radians(field_deg), 2}, {radians(-1.7 * field_deg), 0.5}};
     for (const FocusCriterion criterion : {min_rms, min_max}) {
-      for (const double distance : {1500.0, infinity}) {
+      for (const double distance : {near_mm, infinity}) {
         SCOPED_TRACE(std::string(id) + ' ' + std::string(name(criterion)));
         const FocusOptions options{.criterion = criterion, .fields = fields};
         const Lens best = with_focus(data_lens(id), distance, options);
         const double least = blur_diameter(best, distance, options).value();
         for (const double shift : {-1.0, -0.1, -1e-2, -1e-3, -1e-4, 1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
+          if (best.film_z() + shift <= best.surfaces().back().vertex_z) continue;
           const Lens other = with_film(best, best.film_z() + shift);
           EXPECT_GE(blur_diameter(other, distance, options).value(), least) << shift;
         }
@@ -167,10 +174,12 @@ TEST(ExactFocus, SeveralWavelengthsAreWeighted) {
 }
 
 TEST(ExactFocus, PerfectLensFocusesParaxially) {
-  for (const char* id : {"analytic_ellipsoid_concentric_150mm", "mirror_newton_200mm_f8"}) {
+  for (const char* id :
+       {"analytic_ellipsoid_concentric_150mm", "analytic_plano_hyperbolic_100mm", "mirror_newton_200mm_f8"}) {
     const Lens lens = data_lens(id);
-    EXPECT_NEAR(solve_focus(lens, infinity, {min_max}).film_z, solve_focus(lens, infinity, {paraxial}).film_z, 1e-10)
-        << id;
+    const double film_z = solve_focus(lens, infinity, {paraxial}).film_z;
+    EXPECT_NEAR(solve_focus(lens, infinity, {min_rms}).film_z, film_z, 1e-12) << id;
+    EXPECT_NEAR(solve_focus(lens, infinity, {min_max}).film_z, film_z, 1e-10) << id;
   }
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -95,18 +94,6 @@ TEST(FocusPoints, MoveLinearlyInInverseDepth) {
     const double along = glm::dot(at - from, to - from);
     EXPECT_GE(along, last);
     last = along;
-  }
-}
-
-TEST(FocusPoints, DoNotOvershootInTheImage) {
-  const FocusPoint p =
-      point({key(0, {0, 0, -1000}), key(1, {0, 0, -1010}), key(1.5, {0, 0, -5000}), key(9, {0, 0, -5000})});
-  double last = -1000;
-  for (double time = 0; time <= 9; time += 0.01) {
-    const double z = only(p, moment(time)).point.position.z;
-    EXPECT_LE(z, last + 1e-9);
-    EXPECT_GE(z, -5000 - 1e-9);
-    last = z;
   }
 }
 

@@ -220,16 +220,6 @@ TEST(ExactBlur, TiltedFilmUsesTheHitsInItsPlane) {
   }
 }
 
-TEST(ExactBlur, IsPositiveBehindTheFocus) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const RayBundle bundle = ImageRays(lens, 22).bundle({{0, 100, -1200}, false});
-  const double film_z = solve_focus(lens, 1200, {.criterion = FocusCriterion::min_rms}).film_z;
-  for (const double tilt : {0.0, 0.3}) {
-    EXPECT_GT(blur_on(bundle, film_at(film_z + 5, tilt))->signed_diameter, 0.8);
-    EXPECT_LT(blur_on(bundle, film_at(film_z - 5, tilt))->signed_diameter, -0.8);
-  }
-}
-
 TEST(ExactBlur, SignIsIndependentOfTheNumberOfRays) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const ScenePoint place{{-150, 86, -1100}};

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "../expect_error.hpp"
@@ -104,18 +103,6 @@ TEST(Keyframes, PassKeysAtTheHarmonicMeanOfTheSlopes) {
   // Unequal steps of 1 and 3 with slopes 1 and 2: 1 / (7/12 / 1 + 5/12 / 2) = 24/19.
   const Keyframes uneven({0, 1, 4}, {0, 1, 7});
   EXPECT_NEAR(uneven.at(0.5), 0.5 - 24.0 / 19 / 8, 1e-15);
-}
-
-TEST(Keyframes, CommuteWithShiftAndScale) {
-  std::mt19937 random(3);
-  for (int draw = 0; draw < 50; ++draw) {
-    const Keys keys = random_keys(random);
-    Keys other = keys;
-    for (double& t : other.times) t = 8 * t + 64;
-    for (double& v : other.values) v = -0.25 * v;
-    const Keyframes curve(keys.times, keys.values), scaled(other.times, other.values);
-    for (double t = -60; t < 500; t += 3.7) EXPECT_NEAR(scaled.at(8 * t + 64), -0.25 * curve.at(t), 1e-8);
-  }
 }
 
 TEST(Keyframes, RefuseInvalidKeys) {

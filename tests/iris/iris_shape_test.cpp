@@ -10,8 +10,8 @@
 
 #include "../blades.hpp"
 #include "../expect_error.hpp"
+#include "../low_discrepancy.hpp"
 #include "../message.hpp"
-#include "core/low_discrepancy.hpp"
 #include "iris/iris_edges.hpp"
 #include "petzval/core/error.hpp"
 
@@ -64,69 +64,11 @@ TEST(Iris, AreaEqualsPolygonAndCircularSegments) {
   }
 }
 
-TEST(IrisShape, HasTheMomentsOfARegularPolygon) {
-  const auto expect = [](const Iris& iris, double mean_square) {
-    const IrisShape shape(iris);
-    constexpr std::uint32_t count = 1 << 16;
-    const core_detail::Kronecker<2> random(1);
-    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto [u, v] = random(i);
-      const Vec2<double> p = shape.sample(u, v);
-      x += p.x / count, y += p.y / count;
-      xx += p.x * p.x / count, yy += p.y * p.y / count, xy += p.x * p.y / count;
-    }
-    for (const double zero : {x, y, xy}) EXPECT_NEAR(zero, 0, 1e-4);
-    EXPECT_NEAR(xx, mean_square, 1e-4);
-    EXPECT_NEAR(yy, mean_square, 1e-4);
-  };
-  expect({}, 0.25);
-  for (const int n : {3, 5, 6, 9, 20}) {
-    expect({.blades = n, .rotation_rad = 0.2}, (2 + std::cos(2 * pi / n)) / 12);
-  }
-}
-
-// Samples are counted in equal cells of the square and in the images of these cells.
-TEST(IrisShape, PassesAChiSquareTestInSmallSquares) {
-  for (const Iris& iris : irises()) {
-    const IrisShape shape(iris);
-    constexpr int side = 12, trials = 40000;
-    std::vector<double> area(side * side), found(side * side);
-    const core_detail::Kronecker<2> fine(5);
-    const auto cell = [](double x, double y) {
-      const auto at = [](double c) { return std::min(side - 1, static_cast<int>((c + 1) / 2 * side)); };
-      return static_cast<std::size_t>(at(y) * side + at(x));
-    };
-    constexpr int dense = 8 * trials;
-    for (std::uint32_t i = 0; i < dense; ++i) {
-      const auto [u, v] = fine(i);
-      const double x = 2 * u - 1, y = 2 * v - 1;
-      const bool inside =
-          iris.round() ? x * x + y * y <= 1 : room_between_blades(iris, x, y) >= 0 && x * x + y * y <= 1;
-      area[cell(x, y)] += inside ? 4.0 / dense : 0;
-    }
-    const core_detail::Kronecker<2> random(6);
-    for (std::uint32_t i = 0; i < trials; ++i) {
-      const auto [u, v] = random(i);
-      const Vec2<double> p = shape.sample(u, v);
-      found[cell(p.x, p.y)] += 1;
-    }
-    // Low-discrepancy samples stay far below 144, the mean of independent samples.
-    double chi = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const double wanted = trials * area[i] / shape.area();
-      if (wanted < 5) continue;
-      chi += (found[i] - wanted) * (found[i] - wanted) / wanted;
-    }
-    EXPECT_LT(chi, 30) << text(iris);
-  }
-}
-
 // The map from the unit square preserves areas: its Jacobian is the area of the iris.
 TEST(IrisShape, MapsEqualAreasToEqualAreas) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
-    const core_detail::Kronecker<2> random(2);
+    const testing::Kronecker<2> random(2);
     int checked = 0, kept = 0;
     for (std::uint32_t i = 0; i < 500; ++i) {
       const auto at = random(i);
@@ -152,7 +94,7 @@ TEST(IrisShape, MapsEqualAreasToEqualAreas) {
 TEST(IrisShape, SamplesAreContained) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
-    const core_detail::Kronecker<2> random(3);
+    const testing::Kronecker<2> random(3);
     for (std::uint32_t i = 0; i < 5000; ++i) {
       const auto [u, v] = random(i);
       const Vec2<double> rim = shape.sample(u, 1), p = shape.sample(u, v);
@@ -173,7 +115,7 @@ TEST(IrisShape, SamplesAreContained) {
 TEST(IrisShape, PositionsMapBackToTheSquare) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
-    const core_detail::Kronecker<2> random(7);
+    const testing::Kronecker<2> random(7);
     for (std::uint32_t i = 0; i < 2000; ++i) {
       const auto [u, v] = random(i);
       const Vec2<double> p = shape.sample(u, v), place = shape.position(p.x, p.y);
@@ -190,7 +132,7 @@ TEST(IrisShape, FloatEqualsDouble) {
     if (iris.round()) continue;
     const IrisShape shape(iris);
     for (std::uint32_t i = 0; i < 2000; ++i) {
-      const auto [u, v] = core_detail::Kronecker<2>(8)(i);
+      const auto [u, v] = testing::Kronecker<2>(8)(i);
       const auto [x, y] = iris_detail::iris_point(shape.sectors<float>(), static_cast<float>(u), static_cast<float>(v));
       const Vec2<double> p = shape.sample(static_cast<float>(u), static_cast<float>(v));
       EXPECT_NEAR(x, p.x, 2e-6) << text(iris) << " " << u;
@@ -225,7 +167,7 @@ TEST(IrisShape, IsMirroredInAnImageUpsideDown) {
       const IrisShape shape(iris), image(iris_detail::upside_down(iris, along_x, along_y));
       EXPECT_NEAR(image.area(), shape.area(), 1e-15);
       for (std::uint32_t i = 0; i < 100; ++i) {
-        const auto [u, v] = core_detail::Kronecker<2>(4)(i);
+        const auto [u, v] = testing::Kronecker<2>(4)(i);
         const double x = 2 * u - 1, y = 2 * v - 1;
         EXPECT_EQ(shape.contains(x, y), image.contains(along_x ? -x : x, along_y ? -y : y)) << text(iris);
       }

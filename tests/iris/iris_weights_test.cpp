@@ -7,12 +7,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "../expect_error.hpp"
+#include "../low_discrepancy.hpp"
 #include "../message.hpp"
-#include "core/low_discrepancy.hpp"
 #include "iris/iris_edges.hpp"
 #include "petzval/core/error.hpp"
 
@@ -68,7 +67,7 @@ TEST(EdgeWeight, ConservesTheMeanOnEveryShape) {
       double sum = 0;
       constexpr std::size_t count = 1 << 15;
       for (std::size_t i = 0; i < count; ++i) {
-        const auto [u, v] = core_detail::fibonacci_point(i, count);
+        const auto [u, v] = testing::fibonacci_point(i, count);
         sum += weights.at(shape.sample(u, v));
       }
       EXPECT_NEAR(sum / count, 1, 1e-4) << iris.blades << ' ' << edge.distribution << ' ' << edge.strength;
@@ -91,7 +90,7 @@ TEST(IrisWeights, WeightOverDensityIsConstant) {
   for (const EdgeWeight& edge : edges_of_the_text()) {
     const IrisWeights weights({.blades = 7}, edge, {}, 0, "");
     for (std::size_t i = 0; i < 10000; ++i) {
-      const auto [u, v] = core_detail::fibonacci_point(i, 10000);
+      const auto [u, v] = testing::fibonacci_point(i, 10000);
       const auto drawn = weights.draw(u, v);
       EXPECT_NEAR(weights.of_sample(drawn.u, drawn.v) / drawn.density, 1, 0.0125) << edge.distribution;
     }
@@ -101,14 +100,13 @@ TEST(IrisWeights, WeightOverDensityIsConstant) {
 /// Chi-square of samples in cells of the square against their stated density.
 TEST(IrisWeights, SamplesHaveTheStatedDensity) {
   constexpr std::size_t columns = 16, rows = 16, count = 1 << 18;
-  const core_detail::Kronecker<2> random(3);
   for (const EdgeWeight& edge : {EdgeWeight{20.7, 0.6}, EdgeWeight{-4, 0.8}, EdgeWeight{}}) {
     for (const IrisMap& map : {IrisMap{}, some_map(), onion_rings({.period = 0.2}, 64)}) {
       for (const double uniform : {0.0, 0.25}) {
         const IrisWeights weights({.blades = 5, .roundness = 0.3}, edge, map, uniform, "");
         std::array<double, columns * rows> found{}, wanted{};
         for (std::size_t i = 0; i < count; ++i) {
-          const auto [u, v] = random(static_cast<std::uint32_t>(i));
+          const auto [u, v] = testing::fibonacci_point(i, count);
           const auto drawn = weights.draw(u, v);
           ASSERT_TRUE(drawn.u >= 0 && drawn.u <= 1 && drawn.v >= 0 && drawn.v <= 1);
           ASSERT_NEAR(weights.density(drawn.u, drawn.v) / drawn.density, 1, 0.02);
@@ -135,7 +133,7 @@ TEST(IrisWeights, MapsKeepTheirMeanOrAreNormalisedToOne) {
     double sum = 0;
     constexpr std::size_t count = 1 << 16;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      const auto [u, v] = testing::fibonacci_point(i, count);
       sum += weights.at(shape.sample(u, v)) / count;
     }
     return sum;

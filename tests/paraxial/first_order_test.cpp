@@ -58,17 +58,6 @@ TEST(FirstOrder, SqueezeEqualsTheDeclaredSqueeze) {
   EXPECT_EQ(squeeze(data_lens("cylinder_3.9mm")), 0);  // power in one section only
 }
 
-TEST(RayMatrix, HasDeterminantOne) {
-  for (const Prescription& p : data_prescriptions()) {
-    SCOPED_TRACE(p.id);
-    const Lens lens = compile(p);
-    for (const Meridian meridian : {Meridian::y, Meridian::x}) {
-      const RayMatrix m = ray_matrix(lens, 0, lens.surface_count(), 0, meridian);
-      EXPECT_NEAR(m.a * m.d - m.b * m.c, 1, 1e-13 * (1 + std::abs(m.a * m.d) + std::abs(m.b * m.c)));
-    }
-  }
-}
-
 TEST(RayMatrix, FollowedByItsInverseIsTheIdentity) {
   const RayMatrix matrix = ray_matrix(data_lens("double_gauss_100mm_f2.0"), 0, 4).on_slopes(1, 1.5);
   const RayMatrix identity = matrix.then(matrix.inverse());

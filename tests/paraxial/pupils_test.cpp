@@ -47,15 +47,6 @@ TEST(Pupils, AreImagesOfTheStop) {
   }
 }
 
-TEST(Pupils, ImageEachOtherThroughTheWholeLens) {
-  for (const Prescription& p : data_prescriptions()) {
-    SCOPED_TRACE(p.id);
-    const Lens lens = compile(p);
-    const Pupils result = pupils(lens);
-    EXPECT_NEAR(paraxial_image_z(lens, result.entrance.z), result.exit.z, 1e-9 * (1 + std::abs(result.exit.z)));
-  }
-}
-
 TEST(Pupils, TelecentricPupilsAreInfinite) {
   for (const double radius : {20.0, 60.0, 61.3, 70.7, 100.0, 333.3}) {
     Prescription p;

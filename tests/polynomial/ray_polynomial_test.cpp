@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -161,28 +160,6 @@ TEST(RayPolynomial, HasMirrorSymmetry) {
         EXPECT_EQ(in_x.ray[k][i], k % 3 == 0 ? -lines.ray[k][i] : lines.ray[k][i]);
         EXPECT_EQ(in_y.ray[k][i], k % 3 == 1 ? -lines.ray[k][i] : lines.ray[k][i]);
       }
-    }
-  }
-}
-
-TEST(RayPolynomial, HasRotationalAndMirrorSymmetry) {
-  const RayPolynomial polynomial(7, domain(), {numbers(7, -0.6, 0.02)});
-  Lines<double> lines = all_over<double>(), mirrored, turned;
-  const double c = std::cos(0.4), s = std::sin(0.4);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    mirrored.add(-lines.film_x[i], lines.film_y[i], -lines.pupil_x[i], lines.pupil_y[i]);
-    turned.add(c * lines.film_x[i] - s * lines.film_y[i], s * lines.film_x[i] + c * lines.film_y[i],
-               c * lines.pupil_x[i] - s * lines.pupil_y[i], s * lines.pupil_x[i] + c * lines.pupil_y[i]);
-  }
-  lines.through(polynomial), mirrored.through(polynomial), turned.through(polynomial);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    for (const std::size_t k : {0u, 3u}) {
-      EXPECT_EQ(mirrored.ray[k][i], -lines.ray[k][i]);  // to the bit
-      EXPECT_EQ(mirrored.ray[k + 1][i], lines.ray[k + 1][i]);
-      EXPECT_EQ(mirrored.ray[k + 2][i], lines.ray[k + 2][i]);
-      EXPECT_NEAR(turned.ray[k][i], c * lines.ray[k][i] - s * lines.ray[k + 1][i], 3e-14);
-      EXPECT_NEAR(turned.ray[k + 1][i], s * lines.ray[k][i] + c * lines.ray[k + 1][i], 3e-14);
-      EXPECT_NEAR(turned.ray[k + 2][i], lines.ray[k + 2][i], 3e-14);
     }
   }
 }
@@ -374,28 +351,6 @@ TEST(RayPolynomial, BatchResultIndependentOfNeighbours) {
   // The coefficients fit one register, two registers, or need memory.
   for (const unsigned fits : {3u, 16u, 20u, 40u}) {
     for (const bool mirrors : {false, true}) check(float(), mirrors, fits), check(double(), mirrors, fits);
-  }
-}
-
-TEST(RayPolynomial, BatchEqualsSingleLines) {
-  for (const bool mirrors : {false, true}) {
-    for (const int degree : {3, 5, 7, 9, 11}) {
-      const auto fit = [&](double slope, double nm) { return numbers(degree, slope, 0.02, nm, mirrors); };
-      const RayPolynomial polynomial(degree, domain(mirrors), {fit(-0.6, 480), fit(-0.5, 550), fit(-0.4, 640)});
-      Lines<double> lines = all_over<double>(mirrors);
-      lines.add(20.01, 0, 0, 0), lines.add(0, 0, 7.1, 10.1), lines.add(infinity, 0, 0, 0);
-      for (const Wavelength wavelength : {Wavelength(0), Wavelength(2), Wavelength(3), Wavelength::nm(600)}) {
-        lines.through(polynomial, {.all = wavelength});
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-          Ray<double> one;
-          const RayFate fate = polynomial.to_scene(
-              TwoPlaneRay{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]}, wavelength, one);
-          EXPECT_EQ(fate, lines.fates[i]) << degree << ' ' << i;
-          EXPECT_NEAR(glm::distance(one.origin, lines.origin(i)), 0, 1e-12) << degree << ' ' << i;
-          EXPECT_NEAR(glm::distance(one.direction, lines.direction(i)), 0, 1e-14) << degree << ' ' << i;
-        }
-      }
-    }
   }
 }
 

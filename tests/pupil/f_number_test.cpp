@@ -176,11 +176,6 @@ TEST(WithFNumber, RefusesBeamsFoldedBySphericalAberration) {
   EXPECT_NEAR(real_f_number(with_f_number(ball, next)), next, 1e-6 * next);
 }
 
-TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
-  const Lens lens = with_any_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
-  for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
-}
-
 // Full stops from f/0.95 to f/64 and f/1000 are accepted, or the message names the fastest f-number.
 TEST(WithFNumber, AcceptsStandardFNumbersOrNamesTheFastest) {
   int given = 0, refused = 0;
@@ -257,13 +252,6 @@ TEST(WithFNumber, KeepsTheInferredStop) {
     EXPECT_EQ(pupils(stopped).stop, before.stop);
     EXPECT_NEAR(real_f_number(stopped), n, 1e-12 * n);
   }
-}
-
-TEST(WithFNumber, WorksOnAnInferredStop) {
-  Prescription p = testing::data_prescription("singlet_50mm_biconvex");
-  for (SurfaceRow& row : p.surfaces) row.stop = false;
-  const Lens stopped = with_f_number(compile(p), 8);
-  EXPECT_NEAR(real_f_number(stopped), 8, 1e-12);
 }
 
 TEST(WithFNumber, RefusesInvalidNumbers) {
