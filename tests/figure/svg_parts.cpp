@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "svg_parts.hpp"
 
+#include <gtest/gtest.h>
+
 #include <regex>
 
 namespace petzval::testing {
@@ -25,6 +27,22 @@ Points marks(const std::string& svg) {
   const std::string circle = "<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" r=\"4\" fill=\"#(d0331f|fff)\"";
   for (const Match& mark : matches(svg, circle)) result.push_back({mark.number(1), mark.number(2)});
   return result;
+}
+
+std::size_t expect_marks_within_cells(const std::string& svg) {
+  std::size_t found = 0;
+  const std::string frame =
+      "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"[0-9.]+\" fill=\"none\"";
+  for (const Match& cell : matches(svg, frame)) {
+    const double x = cell.number(1), y = cell.number(2), side = cell.number(3);
+    const std::string content = svg.substr(cell.position, svg.find("<text", cell.position) - cell.position);
+    for (const Match& mark : matches(content, "M([-0-9.]+) ([-0-9.]+)h4")) {
+      ++found;
+      EXPECT_TRUE(mark.number(1) + 2 >= x && mark.number(1) + 2 <= x + side) << mark[0];
+      EXPECT_TRUE(mark.number(2) >= y && mark.number(2) <= y + side) << mark[0];
+    }
+  }
+  return found;
 }
 
 std::vector<Points> paths(const std::string& svg, const std::string& style) {

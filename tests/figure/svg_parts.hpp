@@ -29,6 +29,9 @@ std::size_t count(const std::string& text, const std::string& part);
 /// Centres of the numbered points in a figure of a scene, px, in order.
 Points marks(const std::string& svg);
 
+/// Checks that the markers of rays lie within the frames of their cells, above the text. Returns their number.
+std::size_t expect_marks_within_cells(const std::string& svg);
+
 /// The corners of each path whose attributes contain `style`, px.
 std::vector<Points> paths(const std::string& svg, const std::string& style);
 
