@@ -11,11 +11,9 @@
 #include "../data_lenses.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/analysis/spot.hpp"
-#include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_boundary.hpp"
 
@@ -63,12 +61,6 @@ TEST(LensWithIris, BoundaryLiesOnTheIris) {
   EXPECT_EQ(beside, 0u);
 }
 
-TEST(LensWithIris, IrradianceFollowsTheArea) {
-  for (const auto& [round, bladed] : {pair_of(testing::front_stop_lens()), double_gauss(8)}) {
-    EXPECT_NEAR(film_irradiance(bladed, {}) / film_irradiance(round, {}), hexagon_over_disc, 2e-3) << round.name();
-  }
-}
-
 TEST(LensWithIris, PointImageHasItsShapeAndIrradiance) {
   const auto [round, bladed] = double_gauss(4);
   const FieldPoint near{0, -1500};  // well out of focus
@@ -89,77 +81,6 @@ TEST(LensWithIris, SpotsLoseRaysOutsideThePolygon) {
     EXPECT_NEAR(area(bladed) / area(round), hexagon_over_disc, 0.02) << i;
     EXPECT_EQ(polygons[i].sent, discs[i].sent);
     EXPECT_LT(polygons[i].size.rms_radius, discs[i].size.rms_radius) << i;
-  }
-}
-
-TEST(LensWithIris, ExactCameraClipsAtTheIris) {
-  const auto [round, bladed] = double_gauss(4);
-  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
-  const auto mean = [&](const Lens& lens, const FilmPoint& at) {
-    const Camera camera(lens, film, {.model = ModelKind::exact_double});
-    constexpr int count = 20000;
-    double sum = 0;
-    for (int i = 0; i < count; ++i) {
-      sum += camera.sample({at, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count}).weight;
-    }
-    return sum / count;
-  };
-  for (const FilmPoint& at : {FilmPoint{0, 0}, FilmPoint{9, -6}}) {
-    EXPECT_NEAR(mean(bladed, at) / film_irradiance(bladed, at), 1, 5e-3);
-    EXPECT_NEAR(mean(bladed, at) / mean(round, at), hexagon_over_disc, 5e-3);
-  }
-}
-
-TEST(LensWithIris, ExactConnectionsPassTheIris) {
-  const Camera camera(double_gauss(4).bladed, {.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20},
-                      {.model = ModelKind::exact_double});
-  const Vec3<double> point{20, 30, -1500};
-  constexpr int count = 2000;
-  int passed = 0, stopped = 0;
-  for (int i = 0; i < count; ++i) {
-    const auto s = camera.sample_importance(point, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
-    passed += s.importance.we > 0;
-    stopped += s.pdf > 0 && s.importance.fate == RayFate::vignetted;
-  }
-  EXPECT_NEAR(passed / static_cast<double>(passed + stopped), hexagon_over_disc, 0.04);
-}
-
-TEST(LensWithIris, FittedModelsHaveTheIris) {
-  const Lens lens = double_gauss(4).bladed;
-  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
-  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3), ModelKind::polynomial(7)}) {
-    const Camera camera(lens, film, {.model = model});
-    for (const FilmPoint& at : {FilmPoint{0, 0}, FilmPoint{9, -6}, FilmPoint{-14, 9}}) {
-      constexpr int count = 20000;
-      double sum = 0;
-      int lost = 0;
-      for (int i = 0; i < count; ++i) {
-        const CameraRay ray = camera.sample({at, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count});
-        sum += ray.weight;
-        lost += !ray;
-      }
-      EXPECT_NEAR(sum / count / film_irradiance(lens, at), 1, 2e-3) << name(model);
-      EXPECT_EQ(lost, 0) << name(model);
-    }
-  }
-}
-
-TEST(LensWithIris, FittedConnectionsPassTheIris) {
-  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
-  const auto [round, bladed] = double_gauss(4);
-  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(5)}) {
-    const auto flux = [&](const Lens& lens) {
-      const Camera camera(lens, film, {.model = model});
-      constexpr int count = 20000;
-      double sum = 0;
-      for (int i = 0; i < count; ++i) {
-        const auto s =
-            camera.sample_importance({20, 30, -1500}, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
-        if (s.pdf > 0) sum += s.importance.we / s.pdf;
-      }
-      return sum;
-    };
-    EXPECT_NEAR(flux(bladed) / flux(round), hexagon_over_disc, 0.01) << name(model);
   }
 }
 

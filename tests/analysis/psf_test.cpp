@@ -9,8 +9,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <random>
-#include <string>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -201,81 +199,6 @@ TEST(PointImage, FieldsOutsideTheLensAreDark) {
   EXPECT_EQ(sum(image), 0u);
   EXPECT_EQ(image.size.max_radius, 0);
   for (const double value : image.radial_profile) EXPECT_EQ(value, 0);
-}
-
-/// RMS error of the light per bin, over 12 x 12 bins of a vignetted bokeh and several seeds, compared with many rays.
-class BinError {
- public:
-  BinError() {
-    const RayBundle many = trace_bundle(lens_, pupil_, 1 << 19, 1000);
-    size_ = spot_size(many.x, many.y);
-    reference_ = bins(many.x, many.y, 1 << 19);
-  }
-
-  double sobol(std::uint32_t count) const {
-    return error([&](std::uint32_t seed) {
-      const RayBundle hits = trace_bundle(lens_, pupil_, count, seed);
-      return bins(hits.x, hits.y, count);
-    });
-  }
-
-  double random(std::uint32_t count) const {
-    return error([&](std::uint32_t seed) {
-      std::mt19937_64 generator(seed);
-      std::uniform_real_distribution<double> uniform(0, 1);
-      std::vector<double> hit_x, hit_y;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const double u = uniform(generator), v = uniform(generator);
-        const Vec2<double> p = pupil_(u, v);
-        const auto end = trace(lens_, pupil_.plane().ray(p.x, p.y));
-        if (!end.transmitted()) continue;
-        const double t = (lens_.film_z() - end.ray.origin.z) / end.ray.direction.z;
-        hit_x.push_back(end.ray.origin.x + t * end.ray.direction.x);
-        hit_y.push_back(end.ray.origin.y + t * end.ray.direction.y);
-      }
-      return bins(hit_x, hit_y, count);
-    });
-  }
-
- private:
-  using Bins = std::array<double, 144>;
-
-  Bins bins(const std::vector<double>& x, const std::vector<double>& y, std::uint32_t count) const {
-    Bins result{};
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double u = (x[i] - size_.centroid.x) / size_.max_radius, v = (y[i] - size_.centroid.y) / size_.max_radius;
-      if (std::abs(u) >= 1 || std::abs(v) >= 1) continue;
-      result[static_cast<std::size_t>(6 * (u + 1)) * 12 + static_cast<std::size_t>(6 * (v + 1))] += 1.0 / count;
-    }
-    return result;
-  }
-
-  template <class Sample>
-  double error(Sample&& sample) const {
-    constexpr std::uint32_t seeds = 12;
-    double squares = 0;
-    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
-      const Bins found = sample(seed);
-      for (std::size_t i = 0; i < found.size(); ++i) squares += std::pow(found[i] - reference_[i], 2);
-    }
-    return std::sqrt(squares / seeds / 144);
-  }
-
-  static Lens defocused(const Lens& lens) { return with_film(lens, lens.film_z() + 2); }
-
-  Lens lens_ = defocused(data_lens("double_gauss_100mm_f1.35"));
-  PupilSampler pupil_{pupil_boundary(lens_, {radians(14), -infinity})};
-  SpotSize size_;
-  Bins reference_{};
-};
-
-TEST(PointImage, BinsConvergeFasterThanRandomSampling) {
-  // The rim of the pupil is a step, so that the slope is near -3/4 instead of -1; random sampling has -1/2.
-  const BinError error;
-  const double slope = std::log2(error.sobol(1 << 14) / error.sobol(1 << 6)) / 8;
-  EXPECT_LE(slope, -0.65);
-  EXPECT_LE(error.sobol(1 << 12), 0.45 * error.random(1 << 12));
-  RecordProperty("slope", std::to_string(slope));
 }
 
 TEST(Psf, MissingWavelengthHasNoLight) {

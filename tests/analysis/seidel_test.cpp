@@ -16,7 +16,6 @@
 #include "../seidel.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/trace/trace.hpp"
 
 namespace petzval {
 namespace seidel_test {
@@ -83,17 +82,6 @@ Prescription aspheric_triplet(double stop_distance) {
 
 Lens compiled_f_d_c(const Prescription& p) {
   return compile(p, std::array{f_line_nm, d_line_nm, c_line_nm}, {.missing_glass = MissingGlass::abbe});
-}
-
-/// Third-order part of an odd function: f(t) / t^3 at t, t/2, t/4 and t/8, extrapolated to 0 in powers of t^2.
-template <class Function>
-double third_order(const Function& f, double t) {
-  std::array<double, 4> part{};
-  for (double& value : part) value = f(t) / (t * t * t), t /= 2;
-  for (double power = 4; power <= 64; power *= 4) {
-    for (std::size_t i = 0; i < 3; ++i) part[i] = part[i + 1] + (part[i + 1] - part[i]) / (power - 1);
-  }
-  return part[0];
 }
 
 TEST(ParaxialRays, InvariantIsEqualAtEverySurfaceOfEveryLens) {
@@ -337,44 +325,6 @@ TEST(SeidelSums, EqualIndependentSumsAndPetzvalSumOfEveryLens) {
     }
   }
   EXPECT_GE(lenses, 65);
-}
-
-// Transverse aberration in the paraxial image plane: S1 / (2 n' u') (r / marginal height)^3 and S5 / (2 n' u').
-TEST(SeidelSums, SumsEqualLimitsOfExactFans) {
-  for (const char* id : {"double_gauss_100mm_f2.0", "compact_31mm_f2.1", "mirror_ritchey_chretien_57.6m_f24",
-                         "catadioptric_mangin_1000mm_f7.5", "modern_50mm_f1.0", "eye_gullstrand_le_grand"}) {
-    const Lens lens = testing::data_lens(id);
-    const double focal = std::abs(first_order(lens).effective_focal_length), entrance_z = pupils(lens).entrance.z;
-    for (const double distance : {open, 8 * focal}) {
-      const ParaxialField field{.object_distance = distance, .field_rad = 0.1};
-      const SeidelSums sums = seidel_sums(lens, field);
-      const ParaxialRays rays = paraxial_rays(lens, field);
-      const double n_u = signed_index(lens, lens.surface_count()) * rays.surfaces.back().marginal_u;
-      const double image_z = paraxial_image_z(lens, -distance), slope = rays.object_chief_u;
-      const double radius =
-          std::isinf(distance) ? rays.surfaces[0].marginal_y : rays.object_marginal_u * (distance + entrance_z);
-      // Height in the image plane of the ray from a field point through height y of the entrance pupil.
-      const auto hit = [&](double y, double tangent) {
-        const double ray_slope = std::isinf(distance) ? tangent : tangent + y / (distance + entrance_z);
-        const double length = std::hypot(1, ray_slope);
-        const auto end =
-            trace(lens, Ray<double>{{0, y - ray_slope * (entrance_z + 1), -1}, {0, ray_slope / length, 1 / length}},
-                  {.apertures = false});
-        EXPECT_EQ(end.fate, RayFate::transmitted) << id;
-        return end.ray.origin.y + (image_z - end.ray.origin.z) / end.ray.direction.z * end.ray.direction.y;
-      };
-      const double image_height =
-          rays.surfaces.back().chief_y + (image_z - lens.surfaces().back().vertex_z) * rays.surfaces.back().chief_u;
-      const double spherical = third_order([&](double t) { return hit(t * radius, 0); }, 0.25);
-      const double distortion = third_order([&](double t) { return hit(0, t * slope) - t * image_height; }, 0.25);
-      EXPECT_NEAR(spherical * 2 * n_u, sums.sums.s1,
-                  1e-4 * std::abs(sums.sums.s1) + 1e-6 * size_of(sums, &SeidelTerms::s1))
-          << id << ' ' << distance;
-      EXPECT_NEAR(distortion * 2 * n_u, sums.sums.s5,
-                  1e-4 * std::abs(sums.sums.s5) + 1e-6 * size_of(sums, &SeidelTerms::s5))
-          << id << ' ' << distance;
-    }
-  }
 }
 
 TEST(SeidelSums, ChromaticSumsEqualDifferencesOfCloseWavelengths) {

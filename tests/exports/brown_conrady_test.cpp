@@ -11,7 +11,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/low_discrepancy.hpp"
+#include "../low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -79,7 +79,7 @@ TEST_P(BrownConradyFits, PredictChiefRaysWithinTheirError) {
       const BrownConrady fit = fit_brown_conrady(distortion, direction, form);
       EXPECT_LT(fit.largest_px, form == RadialForm::rational ? rational_px : polynomial_px);
       EXPECT_LE(fit.rms_px, fit.largest_px);
-      const core_detail::Kronecker<2> random(5);
+      const testing::Kronecker<2> random(5);
       for (std::uint32_t i = 0; i < 60; ++i) {
         const auto point = random(i);
         const double field = fit.field_rad * 0.999 * point[0], tangent = std::tan(field);

@@ -10,7 +10,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "core/low_discrepancy.hpp"
+#include "../low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
@@ -31,7 +31,7 @@ double far_apart(const Vec2<double>& a, const Vec2<double>& b) { return std::hyp
 /// Uniform image positions.
 std::vector<Vec2<double>> places(const Film& film, int count = 60) {
   std::vector<Vec2<double>> result;
-  const core_detail::Kronecker<2> random(3);
+  const testing::Kronecker<2> random(3);
   for (int i = 0; i < count; ++i) {
     const auto point = random(static_cast<std::size_t>(i));
     result.push_back({point[0] * film.columns, point[1] * film.rows});
@@ -67,28 +67,6 @@ TEST(LensDistortion, KeepsTheScaleOnTheAxis) {
       const double expected = focal_length(ModelKind::thick);
       EXPECT_NEAR(focal_length(ModelKind::exact_double), expected, within * expected) << id << ' ' << size;
     }
-  }
-}
-
-TEST(LensDistortion, IsInvertedUpToTheCorners) {
-  for (const char* id : {"anamorphic_60mm_2x", "biogon_35mm_f2.8", "double_gauss_100mm_f2.0"}) {
-    SCOPED_TRACE(id);
-    const Prescription prescription = petzval::testing::data_prescription(id);
-    const Lens lens = with_focus(compile(prescription), 2000);
-    const Film film = default_film(lens, prescription.image_diagonal_mm);
-    const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
-    int found = 0;
-    for (int row = 0; row <= 8; ++row) {
-      for (int column = 0; column <= 8; ++column) {
-        const Vec2<double> at{column / 8.0 * film.columns, row / 8.0 * film.rows};
-        const auto straight = distortion.undistorted(at);
-        const auto back = straight ? distortion.distorted(*straight) : std::nullopt;
-        if (!back) continue;
-        ++found;
-        EXPECT_LT(far_apart(*back, at), 1e-6) << at.x << ' ' << at.y;
-      }
-    }
-    EXPECT_GT(found, 60);
   }
 }
 
@@ -181,11 +159,13 @@ TEST(LensDistortion, InverseRoundTrips) {
     for (const ModelKind model : {ModelKind::exact_double, ModelKind::exact_float}) {
       SCOPED_TRACE(id + ", " + std::string(name(model)));
       const LensDistortion distortion(Camera(data_lens(id), film, {.model = model}));
-      for (const Vec2<double>& at : places(film, 25)) {
+      std::vector<Vec2<double>> all = places(film, 25);
+      for (const double x : {0.0, 0.0 + film.columns}) all.insert(all.end(), {{x, 0}, {x, 0.0 + film.rows}});
+      for (const Vec2<double>& at : all) {
         const auto seen = distortion.undistorted(at);
-        ASSERT_TRUE(seen);
+        ASSERT_TRUE(seen) << at.x << ' ' << at.y;
         const auto again = distortion.distorted(*seen);
-        ASSERT_TRUE(again);
+        ASSERT_TRUE(again) << at.x << ' ' << at.y;
         EXPECT_LT(far_apart(*again, at), model == ModelKind::exact_double ? 1e-6 : 5e-3);
       }
     }

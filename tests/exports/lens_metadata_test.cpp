@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 
 #include "../data_lenses.hpp"
 #include "distorting_lenses.hpp"

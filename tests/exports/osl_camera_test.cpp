@@ -247,18 +247,6 @@ void expect_rays_of(const Lens& lens, const Shader& shader, const Setting& s, do
   EXPECT_LT(found.pixels, 0.001) << lens.name();
 }
 
-TEST(OslCamera, RaysEqualTheLens) {
-  if (no_compiler()) GTEST_SKIP() << "no compiler";
-  const auto expect = [](const char* id, const Setting& s, double tolerance_mm = 0.01) {
-    const Lens lens = data_lens(id);
-    expect_rays_of(lens, Shader(lens), s, tolerance_mm);
-  };
-  expect("double_gauss_100mm_f1.35", {.focus = 1e4, .f_number = 2});
-  expect("modern_50mm_f1.0", {.focus = 2, .f_number = 1.2});
-  expect("phone_5.6mm_f3.5", {.width = 4, .height = 3, .focus = 1, .f_number = 3.6}, 0.002);
-  expect("fisheye_16mm_f2.8", {.width = 24, .height = 16, .focus = 1, .f_number = 4});
-}
-
 /// A lens whose rear group moves to focus.
 petzval::Prescription floating() {
   petzval::Prescription p = petzval::testing::data_prescription("double_gauss_52mm_f1.8");

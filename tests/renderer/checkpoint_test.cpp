@@ -60,16 +60,6 @@ TEST_F(CheckpointFile, KeepsLargeCountsAndEmptySums) {
   EXPECT_EQ(many.rejected(), 3u);
 }
 
-TEST_F(CheckpointFile, ResumesToEqualBits) {
-  Checkpoint::write(made_up_part(width, height, 1, 1, 7), job_, file_);
-  PictureSums resumed = Checkpoint::read(file_, job_);
-  for (std::uint32_t pass = 7; pass < 18; ++pass) {
-    for (std::size_t t = 0; t < resumed.tiles(); ++t)
-      resumed.add(t, pass % PictureSums::rounds, 3, made_up_unit(resumed, t, pass));
-  }
-  EXPECT_EQ(resumed, sums_);
-}
-
 TEST_F(CheckpointFile, ShowsTheSums) {
   Checkpoint::write(sums_, job_, file_);
   const petzval::RgbImage shown = petzval::read_exr(file_), picture = sums_.picture();

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 
 #include "../expect_error.hpp"
@@ -48,15 +47,6 @@ TEST(PictureSums, BitsAreIndependentOfTheOrder) {
   EXPECT_EQ(backwards, forwards);
   EXPECT_EQ(backwards.picture().pixels, forwards.picture().pixels);
   EXPECT_NE(made_up_part(width, height, 1, 1, 19), forwards);
-}
-
-TEST(PictureSums, PartsAddUpToThePicture) {
-  const PictureSums whole = made_up_part(width, height, 1, 1, 17);
-  for (const std::size_t count : {2u, 3u, 12u}) {
-    PictureSums merged(width, height);
-    for (std::size_t i = count; i >= 1; --i) merged.add(made_up_part(width, height, i, count, 17));
-    EXPECT_EQ(merged, whole) << count;
-  }
 }
 
 TEST(PictureSums, RefuseOtherSizesAndRepeatedTiles) {
@@ -156,41 +146,6 @@ TEST(PictureSums, MeansArePlainMeans) {
     const double all = samples * area[t];
     EXPECT_NEAR(sums.luminance(t).mean, luminance[t] / all, luminance_size[t] / all * 1e-6) << t;
   }
-}
-
-/// For contributions of known variance, standard errors and their coverage agree with theory.
-TEST(PictureSums, StandardErrorsEqualTheVariance) {
-  constexpr int side = PictureSums::tile_pixels, runs = 400;
-  constexpr std::uint32_t samples = 4;
-  constexpr double true_mean = 1, samples_in_all = PictureSums::rounds * samples * side * side;
-  const double true_error = std::sqrt(1 / 3.0 / samples_in_all);  // uniform numbers from 0 to 2: variance 1/3
-  std::mt19937 random(9);
-  std::uniform_real_distribution<float> light(0, 2);
-  double squares = 0, tile_squares = 0;
-  int beyond = 0;
-  for (int run = 0; run < runs; ++run) {
-    PictureSums sums(side, side);
-    for (std::size_t pass = 0; pass < PictureSums::rounds; ++pass) {
-      std::vector<Contribution> unit;
-      for (std::uint32_t p = 0; p < side * side; ++p) {
-        for (std::uint32_t s = 0; s < samples; ++s) {
-          const float value = light(random);
-          unit.push_back({p, {value, value, value}});
-        }
-      }
-      sums.add(0, pass, samples, unit);
-    }
-    const Estimate green = sums.mean()[1], tile = sums.luminance(0);
-    squares += green.standard_error * green.standard_error;
-    tile_squares += tile.standard_error * tile.standard_error;
-    beyond += std::abs(green.mean - true_mean) > 2.131 * green.standard_error;
-    ASSERT_NEAR(green.mean, tile.mean, 1e-6) << "weights of luminance sum to one";
-  }
-  // Standard error of a variance with 15 degrees of freedom over 400 runs: sqrt(2 / 15 / 400) = 1.8 %.
-  EXPECT_NEAR(squares / runs / (true_error * true_error), 1, 0.07);
-  EXPECT_NEAR(tile_squares / runs / (true_error * true_error), 1, 0.07);
-  // Student's t with 15 degrees of freedom exceeds 2.131 in 5 % of the cases, 20 +- 4.4 of 400.
-  EXPECT_NEAR(beyond, 20, 14);
 }
 
 /// Fewer or more passes than rounds, with different numbers of samples.
