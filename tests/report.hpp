@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "core/text.hpp"
+#include "digits.hpp"
 
 /// Cells of the tables that `sh tests/run.sh --report` prints: the worst case of a test. They are properties of the
 /// test in the XML of GoogleTest. Cells with the name of one row may come from several tests.
@@ -22,7 +22,7 @@ inline void put(const std::string& row, const std::string& column, const std::st
 }
 
 inline void put(const std::string& row, const std::string& column, double value, const std::string& bound) {
-  put(row, column, petzval::to_text(value, 2), bound);
+  put(row, column, petzval::testing::digits(value, 2), bound);
 }
 
 }  // namespace testing_report

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../digits.hpp"
 #include "../expect_error.hpp"
 #include "../positioned.hpp"
-#include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
@@ -238,8 +238,9 @@ std::string anamorphic_rows(const petzval::Prescription& lens, const std::string
   std::string rows;
   for (const petzval::SurfaceRow& row : lens.surfaces) {
     const bool cylinder = row.curved_in != petzval::Section::both;
-    rows += std::string(rows.empty() ? "" : ",\n") + "{\"abbe\": " + petzval::to_text(row.medium.vd.value_or(0)) +
-            ", \"ior\": " + petzval::to_text(row.medium.nd.value_or(1)) + ", \"material\": \"" +
+    rows += std::string(rows.empty() ? "" : ",\n") +
+            "{\"abbe\": " + petzval::testing::digits(row.medium.vd.value_or(0)) +
+            ", \"ior\": " + petzval::testing::digits(row.medium.nd.value_or(1)) + ", \"material\": \"" +
             (row.stop              ? "iris"
              : row.medium.is_air() ? "air"
                                    : "abbe") +
@@ -247,9 +248,9 @@ std::string anamorphic_rows(const petzval::Prescription& lens, const std::string
             (cylinder          ? curved_in_x
              : row.radius == 0 ? "planar"
                                : "spherical") +
-            "\", \"radius\": " + petzval::to_text(row.radius == 0 ? 99999 : row.radius) +
-            ", \"thickness\": " + petzval::to_text(row.thickness) +
-            ", \"housing-radius\": " + petzval::to_text(row.semi_diameter.value()) + "}";
+            "\", \"radius\": " + petzval::testing::digits(row.radius == 0 ? 99999 : row.radius) +
+            ", \"thickness\": " + petzval::testing::digits(row.thickness) +
+            ", \"housing-radius\": " + petzval::testing::digits(row.semi_diameter.value()) + "}";
   }
   return "{\"7\": {\"product-name\": \"anamorphic\", \"optical-elements-patent\": [\n" + rows + "]}}";
 }

@@ -104,6 +104,7 @@ int compare(const std::function<ExportedLens(const Prescription&)>& write, doubl
     const std::size_t positions = std::max<std::size_t>(p.configurations.size(), 1);
     if (colours) {
       EXPECT_EQ(std::max<std::size_t>(back.configurations.size(), 1), positions) << p.id;
+      EXPECT_EQ(std::ranges::count(back.imported->warnings, "stop", &petzval::ImportWarning::command), 0) << p.id;
     }
     const bool rims =
         std::ranges::find(written->losses, "configurations", &petzval::ImportWarning::command) == written->losses.end();
@@ -139,18 +140,6 @@ TEST(RoundTrip, CodevKeepsTheRaysOfEveryLensItCanHold) {
 TEST(RoundTrip, TablesKeepTheRaysOfEveryLensOfSpheres) {
   // Planes of glass become spheres of 1e6 mm.
   EXPECT_GE(compare([](const Prescription& p) { return petzval::format_table(p); }, 3e-5, false), 40);
-}
-
-TEST(RoundTrip, ZemaxReadsItsOutputWithoutWarnings) {
-  for (const Prescription& p : lenses()) {
-    std::optional<ExportedLens> written;
-    petzval::testing::message([&] { written = petzval::format_zemax(p, &glasses()); });
-    if (!written) continue;
-    const Prescription back = read(*written);
-    EXPECT_EQ(petzval::format_zemax(back, &glasses()).text.size(),
-              petzval::format_zemax(read(petzval::format_zemax(back, &glasses())), &glasses()).text.size())
-        << p.id;
-  }
 }
 
 /// A glass as readers return it, with n_d and V_d from its formula.
@@ -572,20 +561,6 @@ TEST(RoundTrip, IndicesOfAnyLineRoundTrip) {
       }
     }
   }
-}
-
-TEST(RoundTrip, ApertureOfASeqEqualsItsStop) {
-  int warned = 0, written = 0;
-  for (const Prescription& p : lenses()) {
-    petzval::testing::message([&] {
-      const ExportedLens seq = codev(p);
-      ++written;
-      warned +=
-          static_cast<int>(std::ranges::count(read(seq).imported->warnings, "stop", &petzval::ImportWarning::command));
-    });
-  }
-  EXPECT_GE(written, 66);
-  EXPECT_EQ(warned, 0);
 }
 
 TEST(RoundTrip, TablesRequireAirInFrontAndNameTheirApertures) {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../digits.hpp"
 #include "../expect_error.hpp"
-#include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -396,7 +396,7 @@ TEST(Table, AssumptionsAreReported) {
 /// A number as typed by hand; 0 is written as a random word for a plane.
 std::string typed_radius(double radius, std::mt19937& random) {
   static const std::vector<std::string> planes = {"0", "inf", "Infinity", "plano", "flat", "\u221e", "-inf"};
-  return radius != 0 ? petzval::to_text(radius) : planes[random() % planes.size()];
+  return radius != 0 ? petzval::testing::digits(radius) : planes[random() % planes.size()];
 }
 
 /// Any lens with exactly one stop: planes, air, cemented glasses; every number has few digits.
@@ -435,21 +435,22 @@ TEST(Table, LensIsIndependentOfTheOrderOfColumns) {
     int row_number = 0;
     std::vector<TypedColumn> columns = {
         {{"r", "R", "Radius", "ROC", "radius(mm)"}, [&](const auto& row) { return typed_radius(row.radius, random); }},
-        {{"d", "t", "TH", "thickness", "Distance"}, [](const auto& row) { return petzval::to_text(row.thickness); }},
+        {{"d", "t", "TH", "thickness", "Distance"},
+         [](const auto& row) { return petzval::testing::digits(row.thickness); }},
         {{"n", "nd", "n_d", "index", "IOR"},
          [&](const auto& row) {
-           return row.medium.vd ? petzval::to_text(row.medium.nd.value_or(1)) : random() % 2 ? none : "1";
+           return row.medium.vd ? petzval::testing::digits(row.medium.nd.value_or(1)) : random() % 2 ? none : "1";
          }},
         {{"v", "vd", "V", "Abbe"},
-         [&](const auto& row) { return row.medium.vd  ? petzval::to_text(*row.medium.vd)
-                                       : random() % 2 ? none
-                                                      : "0"; }},
-        {{"semi", "SD", "semi_diameter"}, [](const auto& row) { return petzval::to_text(*row.semi_diameter); }},
+         [&](const auto& row) {
+           return row.medium.vd ? petzval::testing::digits(*row.medium.vd) : random() % 2 ? none : "0";
+         }},
+        {{"semi", "SD", "semi_diameter"}, [](const auto& row) { return petzval::testing::digits(*row.semi_diameter); }},
         {{"stop"}, [&](const auto& row) { return row.stop ? std::string("stop") : none; }},
     };
     if (random() % 2 == 0)
       columns[4] = {{"dia", "Diameter", "\u00d8"},
-                    [](const auto& row) { return petzval::to_text(2 * *row.semi_diameter); }};
+                    [](const auto& row) { return petzval::testing::digits(2 * *row.semi_diameter); }};
     if (random() % 2 == 0) {
       columns.push_back({{"no", "surf", "#"}, [&](const auto&) { return std::to_string(++row_number); }});
       if (columns.back().heads[0] != "no") row_number = 0;
@@ -495,11 +496,11 @@ TEST(Table, EveryRowWithoutHeadsIsASurface) {
       if (!abbe) row.medium.vd.reset();
       if (!rims) row.semi_diameter.reset();
       std::string line = labels ? std::to_string(++number) + (random() % 5 == 0 ? "*  " : "  ") : "";
-      line += typed_radius(row.radius, random) + ' ' + petzval::to_text(row.thickness);
+      line += typed_radius(row.radius, random) + ' ' + petzval::testing::digits(row.thickness);
       const bool brief = air && !rims && random() % 2 == 0;
-      if (!brief) line += ' ' + (air ? "1" : petzval::to_text(row.medium.nd.value_or(1)));
-      if (!brief && abbe) line += ' ' + (air ? (random() % 2 ? "0" : "-") : petzval::to_text(*row.medium.vd));
-      if (rims) line += ' ' + petzval::to_text(2 * *row.semi_diameter);
+      if (!brief) line += ' ' + (air ? "1" : petzval::testing::digits(row.medium.nd.value_or(1)));
+      if (!brief && abbe) line += ' ' + (air ? (random() % 2 ? "0" : "-") : petzval::testing::digits(*row.medium.vd));
+      if (rims) line += ' ' + petzval::testing::digits(2 * *row.semi_diameter);
       if (row.stop) line += random() % 2 ? " stop" : "  STO";
       text += line + '\n';
     }
@@ -529,14 +530,15 @@ TEST(Table, LensesOfTheDataRoundTripAsTables) {
     for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
       const auto& row = p.surfaces[i];
       const auto optional = [](const std::optional<double>& value) {
-        return value && *value != 0 ? petzval::to_text(*value) : std::string();
+        return value && *value != 0 ? petzval::testing::digits(*value) : std::string();
       };
-      text += '\n' + (row.stop ? "stop" : std::to_string(i)) + ',' + petzval::to_text(row.radius) + ',' +
-              petzval::to_text(row.thickness) + ',' + petzval::to_text(row.medium.nd.value_or(1)) + ',' +
-              optional(row.medium.vd) + ',' + optional(row.semi_diameter) + ',' + petzval::to_text(row.conic);
+      text += '\n' + (row.stop ? "stop" : std::to_string(i)) + ',' + petzval::testing::digits(row.radius) + ',' +
+              petzval::testing::digits(row.thickness) + ',' + petzval::testing::digits(row.medium.nd.value_or(1)) +
+              ',' + optional(row.medium.vd) + ',' + optional(row.semi_diameter) + ',' +
+              petzval::testing::digits(row.conic);
       for (const int order : orders) {
         const auto term = std::ranges::find(row.aspheric, order, &petzval::AsphereTerm::order);
-        text += ',' + (term == row.aspheric.end() ? "" : petzval::to_text(term->coefficient));
+        text += ',' + (term == row.aspheric.end() ? "" : petzval::testing::digits(term->coefficient));
       }
     }
     const Prescription back = read(text + '\n');

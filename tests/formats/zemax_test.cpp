@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "../digits.hpp"
 #include "../expect_error.hpp"
-#include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -230,7 +230,7 @@ TEST(Zemax, DeclaredBeams_AreClippedByTheRimOfTheStop) {
     EXPECT_TRUE(launched.imported->warnings.empty());
     EXPECT_EQ(clipped.surfaces[0].semi_diameter, 3);
     ASSERT_EQ(clipped.imported->warnings.size(), 1u);
-    expect_tokens(warning(clipped, "stop"), {3, petzval::to_text(declared, 6)});
+    expect_tokens(warning(clipped, "stop"), {3, petzval::testing::digits(declared, 6)});
   }
   // The size of the stop launches the beam, automatic or not; a clear aperture clips the beam.
   EXPECT_EQ(stop("FLOA 0", wide).surfaces[0].semi_diameter, 7);
@@ -259,10 +259,10 @@ TEST(Zemax, TripletHasTheFNumberOfItsEntrancePupil) {
   for (const Surface& s : {Surface{22.01359, 3.25896, "SK16", 9.5}, Surface{-435.76044, 6.00755, "", 9.5},
                            Surface{-22.21328, 0.99997, "F2", 5}, Surface{20.29192, 4.75041, "", 5},
                            Surface{79.6836, 2.95208, "SK16", 7.5}, Surface{-18.39533, 42.20778, "", 7.5}}) {
-    const std::string rim = petzval::to_text(s.rim);
+    const std::string rim = petzval::testing::digits(s.rim);
     ++number;
     text += "SURF " + std::to_string(number) + "\n" + (number == 4 ? "  STOP\n" : "") + "  CURV " +
-            petzval::to_text(1 / s.radius) + " 0 0 0\n  DISZ " + petzval::to_text(s.thickness) + "\n" +
+            petzval::testing::digits(1 / s.radius) + " 0 0 0\n  DISZ " + petzval::testing::digits(s.thickness) + "\n" +
             (*s.glass ? std::string("  GLAS ") + s.glass + " 0 0 0 0 0 0 0 0 0 0\n" : "") + "  DIAM " + rim +
             " 1 0\n  FLAP 0 " + rim + " 0\n";
   }
@@ -287,10 +287,10 @@ TEST(Zemax, TiltsOfObjectAndImageAreRefused) {
     text = with(std::move(text), "DISZ INFINITY", "DISZ 98");
     if (surface == "SURF 0") {
       return with(std::move(text), "SURF 0\n  TYPE STANDARD\n",
-                  "SURF 0\n  TYPE TILTSURF\n  PARM 1 0\n  PARM 2 " + petzval::to_text(tangent) + "\n");
+                  "SURF 0\n  TYPE TILTSURF\n  PARM 1 0\n  PARM 2 " + petzval::testing::digits(tangent) + "\n");
     }
     return with(std::move(text), "SURF 4\n  TYPE STANDARD\n",
-                "SURF 4\n  TYPE TILTSURF\n  PARM 1 " + petzval::to_text(tangent) + "\n");
+                "SURF 4\n  TYPE TILTSURF\n  PARM 1 " + petzval::testing::digits(tangent) + "\n");
   };
   expect_tokens(refusal(tilted(singlet, "SURF 0", 1)), {"x", "line 26", "TYPE", 45, "y"});
   expect_tokens(refusal(tilted(singlet, "SURF 4", -1)), {"x", "line 47", "TYPE", -45, "x"});
@@ -312,7 +312,7 @@ TEST(Zemax, TelecentricObjectSpacesAreRefusedUnlessTheStopMakesThem) {
   // The stop behind the lens, in its focal plane.
   const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
   std::string text = with(with(near, "FTYP 0 0", "FTYP 1 1"), "  STOP\n", "");
-  text = with(with(text, "  DISZ 48\n", "  DISZ " + petzval::to_text(focus) + "\n"), "SURF 4\n",
+  text = with(with(text, "  DISZ 48\n", "  DISZ " + petzval::testing::digits(focus) + "\n"), "SURF 4\n",
               "SURF 4\n  STOP\n  CURV 0\n  DISZ 20\nSURF 5\n");
   EXPECT_TRUE(read(text).surfaces[3].stop);
 }
@@ -402,7 +402,7 @@ TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
   const Prescription p = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 0 0\n"));
   EXPECT_EQ(p.surfaces[2].thickness, 48);
   const double focus = petzval::first_order(compile(p)).back_focal_distance;
-  expect_tokens(warning(p, "MAZH"), {48, petzval::to_text(focus, 8)});
+  expect_tokens(warning(p, "MAZH"), {48, petzval::testing::digits(focus, 8)});
   // A near object is imaged by the same solve.
   const Prescription near =
       read(with(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 0 0\n"), "DISZ INFINITY", "DISZ 200"));
@@ -639,7 +639,7 @@ TEST(Zemax, MarginalHeightsUseTheZoneOfThePupil) {
   const double focal_length = petzval::first_order(compile(read(singlet))).effective_focal_length;
   EXPECT_LT(thickness("ENPD 10", "MAZH 0 1"), thickness("ENPD 10", "MAZH 0 0.5"));
   EXPECT_LT(thickness("ENPD 10", "MAZH 0 0.5"), focus);
-  EXPECT_NEAR(thickness("FNUM " + petzval::to_text(focal_length / 10) + " 0", "MAZH 0 1"),
+  EXPECT_NEAR(thickness("FNUM " + petzval::testing::digits(focal_length / 10) + " 0", "MAZH 0 1"),
               thickness("ENPD 10", "MAZH 0 1"), 1e-9);
   EXPECT_EQ(thickness("FLOA 0", "MAZH 0 1"), 0);    // without a pupil
   EXPECT_EQ(thickness("ENPD 300", "MAZH 0 1"), 0);  // the ray misses

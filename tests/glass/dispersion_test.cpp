@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "../expect_error.hpp"
-#include "core/text.hpp"
 #include "petzval/core/geometry.hpp"
 
 namespace dispersion_test {

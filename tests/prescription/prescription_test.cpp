@@ -13,7 +13,6 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "core/text.hpp"
 
 namespace prescription_test {
 
