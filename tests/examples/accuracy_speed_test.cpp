@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
-#include <vector>
 
-#include "camera/ray_model.hpp"
+#include "petzval/camera/model_kind.hpp"
 #include "program.hpp"
 
 namespace {
 
 class AccuracySpeed : public Programs {};
-
-std::set<std::string> keys_of(const nlohmann::json& object) {
-  std::set<std::string> keys;
-  for (const auto& [key, value] : object.items()) keys.insert(key);
-  return keys;
-}
-
-const std::set<std::string> row_keys{
-    "model",          "rms_um",     "p99_um",   "max_um", "rms_px",  "max_px", "pupil_shape_error",
-    "exposure_error", "ns_per_ray", "setup_ms", "cost",   "on_front"};
 
 TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
   const auto outcome = run("models", {lens("double_gauss_52mm_f1.8"), "--json", "--out", path("out")});
@@ -31,7 +19,6 @@ TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& row = rows[k];
     SCOPED_TRACE(row.dump());
-    EXPECT_EQ(keys_of(row), row_keys);
     EXPECT_EQ(row["model"], petzval::name(petzval::models()[k]));
     by_model[row["model"]] = row;
     EXPECT_LE(row["rms_um"], row["max_um"]);

@@ -223,27 +223,6 @@ TEST_F(BokehScene, PixelsAreSquareByDefault) {
   for (const char* flag : {"--film", "--size"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
 }
 
-TEST_F(BokehScene, IntegratorsAndModelsAgree) {
-  for (const char* colours : {"d", "rgb", "hero"}) {
-    const json reference = render("path", {"--integrator", "path", "--wavelengths", colours, "--spp", "256"});
-    for (const char* integrator : {"light", "bidirectional"}) {
-      const json report = render("other", {"--integrator", integrator, "--wavelengths", colours, "--spp", "128"});
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(mean(report, c), mean(reference, c),
-                    0.001 * mean(reference, c) + 4 * std::hypot(error(report, c), error(reference, c)))
-            << integrator << ' ' << colours << ' ' << c;
-      }
-    }
-  }
-  // All models have the same exposure at the centre; corners of first-order models are brighter. The pinhole is not
-  // tested: without blur the light of the nearby lamp does not reach the film.
-  for (const char* model : {"thin", "thin_two_disc", "polynomial_5", "exact_double"}) {
-    const json report = render("model", {"--model", model, "--film", "6x4", "--spp", "64"});
-    const json exact = render("exact", {"--film", "6x4", "--spp", "64"});
-    EXPECT_NEAR(mean(report, 1) / mean(exact, 1), 1, 0.03) << model;
-  }
-}
-
 TEST_F(BokehScene, ChoosesAModelWithReasons) {
   const json rough = render("rough", {"--model", "auto", "--spp", "1"});
   const json fine = render("fine", {"--model", "auto", "--budget", "0.01", "--spp", "1"});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <set>
 
 #include "../data_lenses.hpp"
 #include "petzval/camera/camera.hpp"
@@ -53,69 +54,47 @@ class CameraRays : public Programs {
 };
 
 TEST_F(CameraRays, NumbersEqualTheLibrary) {
-  const petzval::Lens wide_open = petzval::testing::data_lens("double_gauss_100mm_f2.0");
-  const petzval::Lens lens_f4 = petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000);
-  const petzval::Camera camera(lens_f4, {}, {.model = petzval::ModelKind::exact_double});
-  const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n",
-                         "exact_double", {"--f-number", "4"});
-  ASSERT_EQ(rows.size(), 1u);
-  const auto r = camera.sample({.film = {7.5, -10.25}, .pupil_u = 0.125, .pupil_v = 0.75});
-  ASSERT_TRUE(r);
-  const double expected[] = {r.ray.origin.x,    r.ray.origin.y, r.ray.origin.z, r.ray.direction.x, r.ray.direction.y,
-                             r.ray.direction.z, r.weight,       r.pdf_pupil,    r.pdf_direction};
-  for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_NEAR(std::stod(rows[0][i]), expected[i], 1e-12 * std::max(1.0, std::abs(expected[i]))) << i;
-  }
-  EXPECT_EQ(rows[0][9], "transmitted");
-}
-
-TEST_F(CameraRays, FocusesByTheGivenCriterion) {
-  const petzval::Lens whole = petzval::testing::data_lens("double_gauss_100mm_f2_28deg");
-  for (const auto criterion : {petzval::FocusCriterion::paraxial, petzval::FocusCriterion::min_rms}) {
-    const petzval::Camera camera(petzval::with_focus(whole, 3000, {.criterion = criterion}), {},
-                                 {.model = petzval::ModelKind::exact_double});
-    const auto rows = rays("double_gauss_100mm_f2_28deg", std::string(header) + "0,0,0.125,0.75,587.5618\n",
-                           "exact_double", {"--criterion", std::string(petzval::name(criterion))});
-    const auto r = camera.sample({.film = {}, .pupil_u = 0.125, .pupil_v = 0.75});
-    EXPECT_NEAR(std::stod(rows.at(0)[4]), r.ray.direction.y, 1e-12) << petzval::name(criterion);
-  }
-}
-
-// Tilting moves the upper edge of the film; its rays equal the rays of a film point at the new position.
-TEST_F(CameraRays, TiltsItsFilm) {
-  const petzval::Lens lens_3m = petzval::with_focus(petzval::testing::data_lens("double_gauss_100mm_f2.0"), 3000);
-  const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
-  const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
-  for (const petzval::ModelKind model : {petzval::ModelKind::thick, petzval::ModelKind::exact_double}) {
-    const auto rows =
-        rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)), {"--tilt", "8", "--swing", "-3"});
-    const auto r = petzval::Camera(lens_3m, film, {.model = model}).sample({{7.5, -10.25}, 0.125, 0.75});
-    ASSERT_TRUE(r);
-    EXPECT_EQ(rows.at(0)[9], "transmitted");
-    EXPECT_NEAR(std::stod(rows[0][4]), r.ray.direction.y, 1e-12);
-    EXPECT_NEAR(std::stod(rows[0][6]), r.weight, 1e-12);
-    // The rays of the upright film differ.
-    const auto upright = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)));
-    EXPECT_GT(std::abs(std::stod(rows[0][4]) - std::stod(upright[0][4])), 1e-4);
-  }
-}
-
-TEST_F(CameraRays, AcceptsIrisAndWeights) {
+  using petzval::ModelKind;
+  const petzval::Lens open = petzval::testing::data_lens("double_gauss_100mm_f2.0"),
+                      at_3m = petzval::with_focus(open, 3000);
+  const petzval::Film tilted{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
+  const petzval::BokehControls weights{.lens_ratio = 1.2, .rate_of_change = 0.5, .weight_distribution = -4};
+  struct Case {
+    Arguments flags;
+    petzval::Camera camera;
+  };
   std::string csv = header;
-  for (int i = 0; i < 64; ++i) csv += "5,-3," + std::to_string(i / 64.) + ",0.9,587.5618\n";
-  const petzval::Lens hexagon = petzval::with_focus(
-      petzval::with_iris(petzval::testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 6}), 3000);
-  const petzval::Camera camera(hexagon, {},
-                               {.model = petzval::ModelKind::thin,
-                                .bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5, .weight_distribution = -4}});
-  const auto rows =
-      rays("double_gauss_100mm_f2.0", csv, "thin",
-           {"--blades", "6", "--lens-ratio", "1.2", "--rate-of-change", "0.5", "--weight-distribution", "-4"});
-  for (int i = 0; i < 64; ++i) {
-    const auto ray = camera.sample({.film = {5, -3}, .pupil_u = i / 64., .pupil_v = 0.9});
-    EXPECT_NEAR(std::stod(rows[static_cast<std::size_t>(i)][6]), ray.weight, 1e-12 * ray.weight);
-    EXPECT_NEAR(std::stod(rows[static_cast<std::size_t>(i)][3]), ray.ray.direction.x, 1e-12);
+  for (int i = 0; i < 64; ++i) csv += "7.5,-10.25," + std::to_string(i / 64.) + ",0.9,587.5618\n";
+  std::set<std::string> directions;
+  const std::vector<Case> cases{
+      {{}, {at_3m, {}, {.model = ModelKind::exact_double}}},
+      {{}, {at_3m, {}, {.model = ModelKind::thick}}},
+      {{"--f-number", "4"},
+       {petzval::with_focus(petzval::with_f_number(open, 4), 3000), {}, {.model = ModelKind::exact_double}}},
+      {{"--criterion", "paraxial"},
+       {petzval::with_focus(open, 3000, {petzval::FocusCriterion::paraxial}), {}, {.model = ModelKind::exact_double}}},
+      {{"--tilt", "8", "--swing", "-3"}, {at_3m, tilted, {.model = ModelKind::thick}}},
+      {{"--tilt", "8", "--swing", "-3"}, {at_3m, tilted, {.model = ModelKind::exact_double}}},
+      {{"--blades", "6", "--lens-ratio", "1.2", "--rate-of-change", "0.5", "--weight-distribution", "-4"},
+       {petzval::with_focus(petzval::with_iris(open, {.blades = 6}), 3000),
+        {},
+        {.model = ModelKind::thin, .bokeh = weights}}}};
+  for (const auto& [flags, camera] : cases) {
+    SCOPED_TRACE(testing::PrintToString(flags) + std::string(petzval::name(camera.model())));
+    const auto rows = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(camera.model())), flags);
+    for (std::size_t k = 0; k < 64; ++k) {
+      const auto r = camera.sample({{7.5, -10.25}, static_cast<double>(k) / 64, 0.9});
+      const double expected[] = {r.ray.origin.x,    r.ray.origin.y,    r.ray.origin.z,
+                                 r.ray.direction.x, r.ray.direction.y, r.ray.direction.z,
+                                 r.weight,          r.pdf_pupil,       r.pdf_direction};
+      for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_NEAR(std::stod(rows.at(k)[i]), expected[i], 1e-12 * std::max(1.0, std::abs(expected[i]))) << i;
+      }
+      EXPECT_EQ(rows[k][9], petzval::name(r.fate));
+    }
+    directions.insert(rows[0][4]);
   }
+  EXPECT_EQ(directions.size(), cases.size());  // each flag changes the rays
 }
 
 TEST_F(CameraRays, PointsOutsideTheFilmHaveAFate) {

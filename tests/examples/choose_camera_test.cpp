@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <string>
-#include <vector>
 
-#include "camera/ray_model.hpp"
+#include "petzval/camera/model_kind.hpp"
 #include "program.hpp"
 
 namespace {

@@ -87,24 +87,4 @@ TEST_F(ChromaticBokeh, OutlineIsBlueIfFocusedNearerAndRedIfFarther) {
   EXPECT_LT(1.3 * rms_radius(farther, "S0.450nm"), rms_radius(farther, "S0.650nm"));
 }
 
-TEST_F(ChromaticBokeh, LateralColourIsZeroOnTheAxis) {
-  const auto json = colours({"--focus", "2000", "--fields", "0,9", "--f-number", "4"});
-  EXPECT_EQ(json["primary_nm"], 590);
-  EXPECT_NEAR(json["f_number_real"].get<double>(), 4, 1e-10);
-  for (const auto& row : json["lateral"][0]["wavelengths"]) {
-    EXPECT_NEAR(row["chief_ray_shift_mm"].get<double>(), 0, 1e-12);
-  }
-  EXPECT_GT(json["lateral"][1]["wavelengths"][0]["chief_ray_shift_mm"], 0.01);
-}
-
-TEST_F(ChromaticBokeh, OriginAndCriterionMoveTheFilm) {
-  const auto film = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all{"--focus", "2000", "--fields", "0"};
-    all.insert(all.end(), more.begin(), more.end());
-    return colours(all)["pictures"][0]["film_z_mm"].get<double>();
-  };
-  EXPECT_GT(film({"--from", "film"}), film({}) + 0.1);  // nearer to the lens
-  EXPECT_NE(film({"--criterion", "paraxial"}), film({}));
-}
-
 }  // namespace

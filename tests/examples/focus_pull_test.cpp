@@ -38,25 +38,6 @@ class FocusPull : public Programs {
 /// The image distance of the 50 mm thin lens at the origin.
 double film_of(double distance) { return 50 * distance / (distance - 50); }
 
-TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
-  const json all = frames(thin_50, rack);
-  ASSERT_EQ(all.size(), 97u);  // 4 s at 24 frames per s, with both ends
-  EXPECT_EQ(all[0]["time_s"], 0);
-  EXPECT_EQ(all[96]["time_s"], 4);
-  for (const std::size_t i : {0u, 12u, 24u}) {
-    EXPECT_NEAR(all[i]["film_z_mm"], film_of(1000), 1e-9);
-    EXPECT_NEAR(all[i]["subject_distance_mm"], 1000, 1e-6);
-    EXPECT_NEAR(all[i]["breathing"], film_of(1000) / 50 - 1, 1e-12);
-  }
-  for (const std::size_t i : {72u, 96u}) EXPECT_NEAR(all[i]["film_z_mm"], film_of(4000), 1e-9);
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    EXPECT_LE(all[i]["film_z_mm"].get<double>(), all[i - 1]["film_z_mm"].get<double>() + 1e-12) << i;
-    EXPECT_EQ(all[i]["status"], "solved");
-    EXPECT_EQ(all[i]["targets"], 1);
-    EXPECT_NEAR(all[i]["rms_blur_um"], 0, 1e-9);
-  }
-}
-
 TEST_F(FocusPull, WritesDistancesThatBlurReads) {
   const json all = frames(thin_50, rack, {"--fps", "1", "--from", "film"});
   Arguments blur = thin_50;

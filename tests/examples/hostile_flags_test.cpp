@@ -8,7 +8,6 @@
 #include <map>
 #include <ostream>
 #include <regex>
-#include <set>
 #include <sstream>
 
 #include "program.hpp"

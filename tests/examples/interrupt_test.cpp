@@ -8,10 +8,8 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
-#include <regex>
 #include <thread>
 
 #include "program.hpp"

@@ -148,19 +148,6 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
-TEST_F(LensBlurProgram, FocusPull_RealLens_FramesEqualStills) {
-  const json pull = blur(joined({small, real(), {"--focus", "2m:inf", "--frames", "3"}}), "pull");
-  EXPECT_EQ(pull["model"], "exact_float");
-  ASSERT_EQ(pull["frames"].size(), 3u);
-  for (const auto& [frame, distance] : {std::pair{"1", "2m"}, {"2", "4m"}, {"3", "inf"}}) {
-    const json still = blur(joined({small, real(), {"--focus", distance}}), "still");
-    EXPECT_EQ(still["model"], "exact_float");
-    EXPECT_EQ(still["focus_mm"], pull["frames"][std::stoul(frame) - 1]["focus_mm"]);
-    EXPECT_EQ(picture("still/blur.pfm").pixels, picture(std::string("pull/blur_000") + frame + ".pfm").pixels);
-  }
-  EXPECT_TRUE(pull["frames"][2]["focus_mm"].is_null());
-}
-
 TEST_F(LensBlurProgram, FocusPull_FileOfKeys_FollowsItsTimes) {
   write("keys.json", R"({"keys": [{"time_s": 3, "distance_mm": 2000}, {"time_s": 5, "distance_mm": null}]})");
   const Arguments town = joined({thin, small, {"--scene", "town", "--focus", path("keys.json")}});

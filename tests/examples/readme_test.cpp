@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the pages of the repository: programs print the output shown, and paths exist.
 // (tests/house/guides.cmake checks their code.)
-#include <algorithm>
 #include <filesystem>
 #include <regex>
 
@@ -48,8 +47,6 @@ TEST_F(Readme, CommandsOfAllPagesCanBeCopied) {
   }
   EXPECT_GE(found, 4u);
 }
-
-TEST_F(Readme, HasAtMost110Lines) { EXPECT_LE(lines(read(root() / "README.md")).size(), 110u); }
 
 /// Paths in back quotes and targets of links are relative to the root of the repository or to the folder of the page.
 TEST_F(Readme, PathsOfAllPagesExist) {

@@ -3,7 +3,6 @@
 // lens or for a file. The program exits with 1, writes nothing, and one line of standard error names the flag (or the
 // file) and the value. hostile_flags_test.cpp has one bad value for each flag of each program.
 #include <algorithm>
-#include <map>
 #include <ostream>
 
 #include "petzval/image/image.hpp"
@@ -84,7 +83,10 @@ const std::vector<Refused> all = {
       {{"--focus", "900", "--fields", "60", "--model", "thin"}, {"--fields", 60}},
       {{"--focus", "900", "--fields", "95"}, {95}},
       {{"--focus", "900", "--at", "100", "--from", "film"}, {100, "film", 169.792}},
-      {{"--focus", "900", "--at", "1e-3"}, {0.001, 0.178171}}}},
+      {{"--focus", "900", "--at", "1e-3"}, {0.001, 0.178171}},
+      {{"--at", "inf", "--focus", "inf", "--diffraction", "--model", "thin"}, {"--diffraction", "--model"}},
+      {{"--at", "inf", "--focus", "inf", "--diffraction", "--lens-ratio", "1.2"}, {"--diffraction"}},
+      {{"--focus", "900", "--wavelengths", "visible:0"}, {"visible:STEP"}}}},
     {"camera-rays",
      {f135, "--table", "@samples.csv", "--out", "@out", "--focus", "3000", "--model", "thick"},
      {{{"--film", "36x240", "--tilt", "60"}, {"film", -120, "surface"}},

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "../data_lenses.hpp"
-#include "core/text.hpp"
+#include "../digits.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/json.hpp"
@@ -42,7 +42,7 @@ TEST_F(SpotDiagram, NumbersEqualTheHits) {
   }
   ASSERT_EQ(spots.size(), 6u);
   for (const auto& row : json) {
-    const auto key = petzval::to_text(row["field_deg"]) + ',' + petzval::to_text(row["wavelength_nm"]);
+    const auto key = petzval::testing::digits(row["field_deg"]) + ',' + petzval::testing::digits(row["wavelength_nm"]);
     const auto& hits = spots.at(key);
     ASSERT_EQ(hits.size(), row["rays_transmitted"].get<std::size_t>()) << key;
     double cx = 0, cy = 0, squares = 0, largest = 0;

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "../data_lenses.hpp"
-#include "lens/any_semi_diameter.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -19,44 +18,8 @@ namespace {
 using examples::textbook_entrance_pupil;
 using examples::textbook_exit_pupil;
 using examples::TextbookPupil;
-using testing::data_lens;
 using testing::data_prescriptions;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The marked stop is surface 5; surface 2 is a little too small.
-Lens double_gauss() { return data_lens("double_gauss_100mm_f2.0"); }
-
-/// Half the diagonal of a film of 48 x 72 mm: relative to 100 mm as 24 x 36 mm to a focal length of 50 mm.
-constexpr double film_corner = 43.27;
-
-Ray<double> from_film(const Lens& lens, double film_height, double x, double y, double z) {
-  const double dy = y - film_height, dz = z - lens.film_z(), length = std::hypot(x, dy, dz);
-  return {{x, y, z}, {x / length, dy / length, dz / length}};
-}
-
-/// A disc in the plane of the exit pupil, compared with the rays from a film point that pass the lens.
-struct Cover {
-  double of_passing = 0;  ///< fraction of the passing rays that lie in the disc
-  double of_disc = 0;     ///< fraction of the disc that passes
-};
-
-Cover cover(const Lens& lens, const TextbookPupil& exit, double film_height) {
-  constexpr int nodes = 500;
-  constexpr double half = 40;
-  int inside = 0, passing = 0, both = 0;
-  for (int i = 0; i < nodes; ++i) {
-    for (int j = 0; j < nodes; ++j) {
-      const double x = half * ((2 * i + 1.0) / nodes - 1), y = half * ((2 * j + 1.0) / nodes - 1);
-      const bool in_disc = 2 * std::hypot(x, y) <= exit.diameter;
-      const bool passes =
-          trace(lens, from_film(lens, film_height, x, y, exit.z), {.travel = Travel::to_scene}).transmitted();
-      inside += in_disc;
-      passing += passes;
-      both += in_disc && passes;
-    }
-  }
-  return {static_cast<double>(both) / passing, static_cast<double>(both) / inside};
-}
 
 /// A ray a little farther from the axis than another.
 Ray<double> outwards(const Ray<double>& ray, double object_z, double by) {
@@ -112,44 +75,6 @@ TEST(TextbookPupil, TendsToTheParaxialPupilAsTheStopCloses) {
     // The phone lens has terms of third order in the height: its error falls with the height, not with its square.
     EXPECT_NEAR(exit.diameter / paraxial.exit.diameter, 1, p.id == "phone_5.6mm_f3.5" ? 1e-5 : 1e-7);
   }
-}
-
-// Error one: the ray depends on the first rim that clips.
-TEST(TextbookPupil, BelongsToTheFirstRimNotToTheStop) {
-  const Lens lens = double_gauss();
-  const double focal_length = first_order(lens).effective_focal_length;
-  const TextbookPupil far = textbook_entrance_pupil(lens, -infinity);
-  EXPECT_EQ(lens.stop(), 5u);
-  EXPECT_EQ(far.limiting, 2u);
-  EXPECT_NEAR(far.diameter / 2, 24.956, 1e-3);
-  EXPECT_NEAR(focal_length / (2 * real_f_number(lens)), 25.132, 1e-3);  // height of the ray to the rim of the stop
-  EXPECT_NEAR(pupils(lens).entrance.diameter / 2, 24.805, 1e-3);
-  // At 1 m a rim of the rear group clips. The setting of the stop changes neither result.
-  const TextbookPupil near = textbook_entrance_pupil(lens, -1000);
-  EXPECT_EQ(near.limiting, 8u);
-  EXPECT_NEAR(near.diameter / 2, 25.132, 1e-3);
-  EXPECT_EQ(textbook_entrance_pupil(with_any_semi_diameter(lens, 5, 17.5), -1000).diameter, near.diameter);
-}
-
-// Error two: the pupil is found on the axis, but off the axis rims clip and shift the pupil.
-TEST(TextbookPupil, WideOpenIsMostlyBlockedAtTheEdgeOfTheField) {
-  const Lens lens = double_gauss();
-  const TextbookPupil exit = textbook_exit_pupil(lens, lens.film_z());
-  const Cover axis = cover(lens, exit, 0), edge = cover(lens, exit, film_corner);
-  EXPECT_GT(axis.of_passing, 0.99);
-  EXPECT_GT(axis.of_disc, 0.99);
-  EXPECT_NEAR(edge.of_disc, 0.205, 0.005);
-  EXPECT_GT(edge.of_passing, 0.999);
-}
-
-// Error three: stopped down, if only the stop clips, the disc is at the wrong position and misses light.
-TEST(TextbookPupil, StoppedDownMissesAFifthOfTheLightAtTheEdgeOfTheField) {
-  const Lens whole = double_gauss();
-  const Lens lens = with_semi_diameter(whole, 5, whole.surfaces()[5].semi_diameter / 4);
-  const TextbookPupil exit = textbook_exit_pupil(lens, lens.film_z());
-  EXPECT_EQ(exit.limiting, 5u);
-  EXPECT_GT(cover(lens, exit, 0).of_passing, 0.99);
-  EXPECT_NEAR(cover(lens, exit, film_corner).of_passing, 0.795, 0.005);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -13,7 +12,6 @@
 namespace {
 
 using nlohmann::json;
-using petzval::Rgb8Image;
 using petzval::RgbImage;
 
 class ViewProgram : public Programs {
