@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "program.hpp"
 
 namespace {

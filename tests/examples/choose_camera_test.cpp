@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string>
 
-#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/camera.hpp"
 #include "program.hpp"
 
 namespace {
