@@ -59,7 +59,8 @@ double miss_rate(const petzval::BlurredImage& picture) {
 
 lens_blur::LensFlags thin_lens(double diameter_mm) {
   lens_blur::LensFlags lens;
-  lens.setup.lens.thin_mm = 50, lens.setup.f_number = 50 / diameter_mm, lens.setup.focus_mm = focus_mm, lens.rays = 100;
+  lens.setup.lens.thin_mm = 50, lens.setup.f_number = 50 / diameter_mm, lens.setup.focus_mm = focus_mm,
+  lens.pattern.rays = 100;
   return lens;
 }
 
@@ -162,11 +163,11 @@ void report_layers(const Settings& settings, const LoadedScene& scene) {
 void report_rays(Settings settings, const LoadedScene& scene) {
   settings.columns /= 2, settings.rows /= 2;
   lens_blur::LensFlags flags = thin_lens(100);
-  flags.rays = 512;
+  flags.pattern.rays = 512;
   const RgbImage reference = scene.through(settings, flags).reference();
   std::printf("| %s |", scene.name.c_str());
   for (const unsigned rays : {32U, 64U, 100U, 256U}) {
-    flags.rays = rays;
+    flags.pattern.rays = rays;
     const View view = scene.through(settings, flags);
     petzval::LayerSet layers;
     petzval::BlurredImage picture;
@@ -189,7 +190,8 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
   lens_blur::LensFlags tilted = thin_lens(100);
   tilted.setup.film.tilt_rad = petzval::radians(1);
   lens_blur::LensFlags singlet;
-  singlet.singlet = "102,-102,12,N-BK7", singlet.setup.focus_mm = focus_mm, singlet.fov_deg = 30, singlet.rays = 100;
+  singlet.singlet = "102,-102,12,N-BK7", singlet.setup.focus_mm = focus_mm, singlet.fov_deg = 30,
+  singlet.pattern.rays = 100;
   lens_blur::LensFlags chroma = singlet;
   chroma.wavelengths = "rgb";
   for (const Row& row : {Row{"thin, 300 mm", thin_lens(300)}, Row{"thin, 100 mm, film tilted by 1 degree", tilted},
@@ -232,10 +234,11 @@ void report_multiples(const Settings& settings, const LoadedScene& scene) {
       std::vector<View> views;
       std::vector<petzval::LayerSet> layers(3);
       for (lens_blur::LensFlags* flags : {&thin, &real, &coloured}) {
-        flags->setup.f_number = row.f_number, flags->setup.focus_mm = focus_mm, flags->fov_deg = 30, flags->rays = 100;
-        flags->jitter = sets == 16, flags->supersample = sets == 4 ? 2 : 1;
+        flags->setup.f_number = row.f_number, flags->setup.focus_mm = focus_mm, flags->fov_deg = 30,
+        flags->pattern.rays = 100;
+        flags->pattern.jitter = sets == 16, flags->pattern.supersample = sets == 4 ? 2 : 1;
         Settings half = settings;
-        if (sets == 4) half.columns /= 2, half.rows /= 2, flags->rays = 400;
+        if (sets == 4) half.columns /= 2, half.rows /= 2, flags->pattern.rays = 400;
         views.push_back(scene.through(half, *flags));
         views.back().peel(4, layers[views.size() - 1]);
       }
