@@ -184,7 +184,7 @@ void add_iris_shape(App& app, CameraFlags& flags) {
 
 namespace {
 
-constexpr Range factor{-1e6, 1e6, "a number from -1e6 to 1e6"};
+constexpr Range any_factor{-1e6, 1e6, "a number from -1e6 to 1e6"};
 
 /// Parses "radius:power" or "x,y:offset".
 std::vector<double> parts_of(const std::string& flag, std::string text, const std::string& rule) {
@@ -212,7 +212,7 @@ void add_expressive(App& app, CameraFlags& flags) {
   };
   // First, because the options below replace what it clears.
   const auto start = [&flags, &lens](const std::string& text) {
-    flags.from_lens = parse_number("--from-lens", text, factor);
+    flags.from_lens = parse_number("--from-lens", text, any_factor);
     lens.power.clear(), lens.film_offsets.clear();
   };
   app.add_option("--from-lens", start,
@@ -235,7 +235,7 @@ void add_expressive(App& app, CameraFlags& flags) {
       "shift of film points away from the lens, all in mm: a surface through x,y:offset, as 0,0:0 18,12:0.3 "
       "-18,12:0.3");
   const auto disperse = [&lens](const std::string& text) {
-    lens.dispersion = {parse_number("--dispersion", text, factor)};
+    lens.dispersion = {parse_number("--dispersion", text, any_factor)};
     if (lens.dispersion.front() == 1) lens.dispersion.clear();
   };
   app.add_option("--dispersion", disperse, "factor of the lens's axial colour: 0 removes it, 1 keeps it")
