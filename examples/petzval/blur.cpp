@@ -53,6 +53,9 @@ struct Options {
 /// Largest number of frames in frames.svg.
 constexpr std::size_t most_shown = 8;
 
+/// Largest change of the reference of a still pixel from frame to frame, in each colour.
+constexpr float most_still_change = 1e-3f;
+
 constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
 
 /// The middle of a picture, at most 320 x 240 pixels.
@@ -124,7 +127,10 @@ class Job {
       }
     }
     result_["model"] = petzval::name(lens_.model());
-    if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
+    if (options_.compare && options_.frames > 1) {
+      result_["flicker"] = flicker_ / (options_.frames - 1);
+      result_["still_change"] = examples::finite_or_null(still_change_ / still_count_);
+    }
     if (options_.frames > 1) write_frames(folder);
     if (options_.compare_rays > 0) compare_rays(folder);
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
@@ -164,8 +170,9 @@ class Job {
     start = std::chrono::steady_clock::now();
     input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
     const double n_buffer_ms = 1e3 * layers_.n_buffer_seconds(), peel_ms = examples::ms_since(start) - n_buffer_ms;
-    const double threshold =
-        options_.highlights_above < 0 ? lens_blur::threshold_of(layers_, !input_.scene()) : options_.highlights_above;
+    // All frames have the threshold of the first frame.
+    if (options_.highlights_above < 0) options_.highlights_above = lens_blur::threshold_of(layers_, !input_.scene());
+    const double threshold = options_.highlights_above;
     start = std::chrono::steady_clock::now();
     petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
     const double gather_ms = examples::ms_since(start);
@@ -319,11 +326,19 @@ class Job {
     for (std::size_t i = 0; i < error.size(); ++i) error[i] = picture.pixels[i] - reference.pixels[i];
     if (!last_error_.empty()) {
       double squares = 0;
-      for (std::size_t i = 0; i < error.size(); ++i)
-        squares += std::pow(static_cast<double>(error[i] - last_error_[i]), 2);
+      for (std::size_t i = 0; i < error.size(); i += 3) {
+        float moved = 0;
+        double change = 0;
+        for (std::size_t c = i; c < i + 3; ++c) {
+          const double off = std::abs(static_cast<double>(error[c] - last_error_[c]));
+          squares += off * off, change += off / 3;
+          moved = std::max(moved, std::abs(reference.pixels[c] - last_reference_[c]));
+        }
+        if (moved <= most_still_change) still_change_ += change, ++still_count_;
+      }
       flicker_ += std::sqrt(squares / static_cast<double>(error.size()));
     }
-    last_error_ = std::move(error);
+    last_error_ = std::move(error), last_reference_ = reference.pixels;
     if (options_.frames == 1) write(reference, std::filesystem::path(options_.out_folder) / "reference");
   }
 
@@ -342,9 +357,10 @@ class Job {
   petzval::BlurredImage blurred_;
   Json result_;
   std::vector<examples::Tile> shown_;  ///< tiles of frames.svg
-  std::vector<float> last_error_;
+  std::vector<float> last_error_, last_reference_;
   double nearest_mm_ = std::numeric_limits<double>::infinity();  ///< while a picture is computed
   double flicker_ = 0, rays_error_px_ = 0;                       ///< rays_error_px_: maximum over all frames
+  double still_change_ = 0, still_count_ = 0;
 };
 
 }  // namespace

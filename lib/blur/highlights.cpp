@@ -161,6 +161,11 @@ void Highlights::find(const GatherOptions& options) {
   constexpr float much = 16;
   const auto rays = static_cast<double>(rays_.rays_of_set());
   const auto brightness = [](const Highlight& h) { return std::max({h.light[0], h.light[1], h.light[2]}); };
+  // Near the limit of a condition, the light is divided between the disc and the pixel of the layer. A light that
+  // becomes a disc in a sequence of frames does so gradually.
+  constexpr double fade = 0.25;
+  const auto beyond = [](double value, double limit) { return std::clamp((value / limit - 1) / fade, 0.0, 1.0); };
+  const auto below = [](double value, double limit) { return std::clamp((1 - value / limit) / fade, 0.0, 1.0); };
   CountsIn bright_in;
   for (float level = above; !bright.empty(); level *= much) {
     bright_in.fill(layers_.columns, layers_.rows, 1, bright);
@@ -169,7 +174,13 @@ void Highlights::find(const GatherOptions& options) {
       const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
       const double covered =
           bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
-      if (h.area > rays && covered < 0.5 && covered * rays < 32) highlights_.push_back(h);
+      const auto part = static_cast<float>(beyond(static_cast<double>(brightness(h)), options.highlights_above) *
+                                           beyond(static_cast<double>(h.area), rays) * below(covered, 0.5) *
+                                           below(covered * rays, 32));
+      if (part == 0) continue;
+      Highlight& added = highlights_.emplace_back(h);
+      for (std::size_t c = 0; c < 3; ++c)
+        added.light[c] = part * h.light[c], added.rest[c] = h.light[c] - added.light[c];
     }
     std::erase_if(bright, [&](const Highlight& h) { return brightness(h) <= level * much; });
   }
@@ -186,7 +197,8 @@ void Highlights::make_groups() {
   constexpr int cell = group_cell;
   // Highlights of one group have blurs that differ by less than a pixel.
   const auto key_of = [&](const Highlight& h) {
-    return std::tuple(h.row / cell, h.column / cell, h.layer, static_cast<int>(h.inverse_depth * rays_.largest_slope));
+    return std::tuple(cell_of(h.row, cell), cell_of(h.column, cell), h.layer,
+                      static_cast<int>(h.inverse_depth * rays_.largest_slope));
   };
   std::map<std::tuple<int, int, int, int>, std::size_t> known;
   for (std::size_t i = 0; i < highlights_.size(); ++i) {
@@ -206,7 +218,8 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
       if (h.column < rect.left || h.column > rect.right || h.layer >= layers) continue;
       float* const at = copy + static_cast<std::size_t>(h.layer * planes) * plane_stride +
                         static_cast<std::ptrdiff_t>(row - rect.top) * columns + (h.column - rect.left);
-      for (std::size_t p = 1; p < 3; ++p) at[p * plane_stride] = 0;
+      const PackedColour rest = PackedColour::of(h.rest[0], h.rest[1], h.rest[2]);
+      at[plane_stride] = rest.red_blue, at[2 * plane_stride] = rest.green_blue;
     }
   }
 }
@@ -444,7 +457,7 @@ std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, s
   // were hidden, which moves the edge of the shadow by less than a cell.
   std::map<std::pair<int, int>, Group> cells;
   for (const std::size_t member : group) {
-    cells[{highlights_[member].row / cell, highlights_[member].column / cell}].push_back(member);
+    cells[{cell_of(highlights_[member].row, cell), cell_of(highlights_[member].column, cell)}].push_back(member);
   }
   std::vector<SharedStamp> stamps;
   const Highlight& light = brightest(group);

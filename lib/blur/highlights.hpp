@@ -16,7 +16,8 @@ namespace petzval::blur_detail {
 struct Highlight {
   int column = 0, row = 0, layer = 0;
   float inverse_depth = 0, light[3] = {};
-  float area = 0;  ///< area of its blur, px^2
+  float rest[3] = {};  ///< light that stays in the pixel of the layer
+  float area = 0;      ///< area of its blur, px^2
 };
 
 /// Counts highlights in rectangles.
@@ -33,8 +34,8 @@ class CountsIn {
   std::vector<std::uint32_t> before_;  ///< number of highlights in the blocks above and to the left
 };
 
-/// Bright pixels that would appear as patterns of dots with few rays. They are removed from the layers, and the light
-/// of each is distributed over the pixels whose rays meet it.
+/// Bright pixels that would appear as patterns of dots with few rays. Their light is removed from the layers and
+/// distributed over the pixels whose rays meet it.
 class Highlights {
  public:
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);
@@ -57,6 +58,9 @@ class Highlights {
   struct Lines;
 
   void find(const GatherOptions& options);
+  /// The square cell of a row or column of the layers. Cells keep their positions in the picture if the overscan
+  /// changes.
+  int cell_of(int at, int size) const noexcept { return (at - overscan_ + (size << 16)) / size; }
   void make_groups();
   /// Adds lines that meet a highlight, up to a number of lines.
   void extend(Lines& lines, const Highlight& highlight, std::size_t count, const std::stop_token& stop) const;

@@ -501,6 +501,46 @@ TEST(Highlights, AreSmoothIfRaysSpreadUnevenly) {
   EXPECT_LT(worst, 0.1);
 }
 
+/// Lamps at 4 m whose discs the edge of a board at 1.2 m cuts.
+std::vector<Surface> lamps_behind_a_board(double x, double y) {
+  std::vector<Surface> seen;
+  if (x + 0.3 * y < 0) seen.push_back({1 / 1200.0f, 0.1f, 0.1f, 0.1f});
+  const bool lamp = std::abs(x - 0.005) < 0.012 && std::abs(std::remainder(y, 0.04)) < 0.0014;
+  const float light = lamp ? 1000.0f : 0.1f;
+  seen.push_back({1 / 4000.0f, light, light, light});
+  return seen;
+}
+
+float largest_change(const BlurredImage& a, const BlurredImage& b) {
+  float most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::abs(a.rgba[i] - b.rgba[i]));
+  return most;
+}
+
+// Layers of a camera with a moving focus differ in overscan from frame to frame.
+TEST(Highlights, MoreOverscan_GivesTheSamePicture) {
+  const LensRays rays = thin_rays(60, 32);
+  PeelPlan plan = plan_peel(rays, 1000, infinity);
+  std::vector<BlurredImage> pictures;
+  for (const int more : {0, 1, 2, 3}) {
+    plan.camera.overscan += more;
+    LayerSet layers;
+    layers.peel(plan, 2, renderer_of(lamps_behind_a_board, plan.camera));
+    pictures.push_back(gather(layers, rays));
+    ASSERT_GT(pictures[0].highlight_count, 0u);
+    EXPECT_LT(largest_change(pictures[0], pictures.back()), 1e-3f) << more;
+  }
+}
+
+TEST(Highlights, LightAtTheThreshold_IsPartlyADisc) {
+  const LensRays rays = thin_rays(60, 32);
+  const LayerSet layers = layers_of(lamps_behind_a_board, rays, 2);
+  const auto above = [&](double threshold) { return gather(layers, rays, {.highlights_above = threshold}); };
+  const float all = largest_change(above(1000), above(100));
+  EXPECT_GT(all, 1);
+  EXPECT_LT(largest_change(above(1000), above(999)), 0.02f * all);
+}
+
 TEST(Highlights, StopIfCancelled) {
   const Scene lamps = [](double x, double y) {
     const bool lamp = std::hypot(std::remainder(x, 0.1), std::remainder(y, 0.05)) < 0.002;

@@ -148,6 +148,26 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
+TEST_F(LensBlurProgram, Frames_StillPixels_DoNotFlicker) {
+  write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -5000]},
+    {"time_s": 1, "position_mm": [0, 0, -2000]}]}])");
+  const Arguments lens{"--thin-lens", "50", "--f-number", "1", "--size", "80x60", "--rays", "100", "--compare"};
+  for (const Arguments& moving : {Arguments{"--focus", "2m:6m"}, Arguments{"--focus", "3m", "--travel", "20"},
+                                  Arguments{"--focus", "5m", "--points", path("keys.json")}}) {
+    for (const char* scene : {"town", "street"}) {
+      const Arguments frames = joined({lens, moving, {"--scene", scene, "--frames", "3"}});
+      const json result = blur(joined({frames, {"--threads", "1"}}));
+      EXPECT_LT(result["still_change"].get<double>(), 0.002) << scene << moving.back();
+      for (const json& frame : result["frames"]) {
+        EXPECT_EQ(frame["highlights_above"], result["frames"][0]["highlights_above"]);
+      }
+    }
+  }
+  blur(joined({lens, {"--scene", "street", "--focus", "2m:6m", "--frames", "3", "--threads", "2"}}), "two");
+  blur(joined({lens, {"--scene", "street", "--focus", "2m:6m", "--frames", "3", "--threads", "1"}}), "one");
+  EXPECT_EQ(picture("one/blur_0003.pfm").pixels, picture("two/blur_0003.pfm").pixels);
+}
+
 TEST_F(LensBlurProgram, FocusPull_FileOfKeys_FollowsItsTimes) {
   write("keys.json", R"({"keys": [{"time_s": 3, "distance_mm": 2000}, {"time_s": 5, "distance_mm": null}]})");
   const Arguments town = joined({thin, small, {"--scene", "town", "--focus", path("keys.json")}});

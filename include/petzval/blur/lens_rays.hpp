@@ -201,7 +201,8 @@ class PETZVAL_API LensRays {
 struct GatherOptions {
   int threads = 1;
   /// Surfaces brighter than this in any channel are spread over the image as discs of the lens's own shape, if the rays
-  /// of a pixel would meet too few of them for a smooth blur. 0: no surfaces are spread.
+  /// of a pixel would meet too few of them for a smooth blur. Up to 1.25 times this value, surfaces are spread in part.
+  /// 0: no surfaces are spread.
   double highlights_above = 1;
   /// Cancels gather() from another thread, within the time of about two tiles of 64 x 16 pixels: gather() throws
   /// Cancelled, and the picture is empty.
