@@ -82,38 +82,36 @@ class Gathering {
     const std::size_t stride = rays_.table.rays;
     const float* corners[4];
     for (int c = 0; c < 4; ++c) {
-      corners[c] = rays_.table.node(channel, 0, 0);
-      if (rays_.shift_invariant) continue;
-      std::vector<float>& corner = memory.corners[c];
-      corner.resize(rays_.table.node_size() + 64);
-      corners[c] = corner.data();
-      rays_.table.at(channel, tile.left + (c % 2) * tile.columns, tile.top + (c / 2) * tile.rows, corner.data());
+      corners[c] = rays_.shift_invariant ? rays_.table.node(channel, 0, 0)
+                                         : rays_.table.rows_at(channel, tile.left + (c % 2) * tile.columns,
+                                                               tile.top + (c / 2) * tile.rows, memory.corners[c]);
     }
     const GatherLoops& loops = gather_loops();
     const auto reach_of = [&](float least, float most) {
       return loops.limits(corners, rays_.shift_invariant ? 1 : 4, stride, stride, least, most);
     };
-    const auto rect_of = [&](const DepthRange& range) {
-      const Limits reach = reach_of(range.least, range.most);
+    const auto rect_of = [&](const Limits& reach) {
       const int left = tile.left + overscan_, top = tile.top + overscan_;
       // One more pixel on each side, because positions are rounded.
       return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
                        left + tile.columns + floor_of(reach.right) + 1, top + tile.rows + floor_of(reach.bottom) + 1};
     };
     DepthRange range = all_;
-    PixelRect rect = rect_of(range.empty() ? DepthRange{0, 0, 0} : range);
+    Limits reach = range.empty() ? reach_of(0, 0) : reach_of(range.least, range.most);
     constexpr int iterations = 3;
     for (int i = 0; method_.limit_steps && i < iterations && !range.empty(); ++i) {
-      const DepthRange narrower = layers_.n_buffer.below(rect);
+      const DepthRange narrower = layers_.n_buffer.below(rect_of(reach));
       const bool same = narrower.least == range.least && narrower.most == range.most;
       range = narrower;
       if (same || range.empty()) break;
-      rect = rect_of(range);
+      reach = reach_of(range.least, range.most);
     }
+    const int count = range.empty() ? 1 : range.layers;
+    if (range.empty()) range = {farthest_, farthest_, 1}, reach = reach_of(farthest_, farthest_);
 
     // A ray without a hit is followed to the farthest of all depths, to detect if it ends in the void.
-    const PixelRect all_read = rect_of({farthest_, range.empty() ? farthest_ : range.most, 1});
-    const TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
+    const PixelRect all_read = rect_of(range.least > farthest_ ? reach_of(farthest_, range.most) : reach);
+    const TileJob job{.window = window(tile, all_read, count, channel, memory),
                       .columns = tile.columns,
                       .rows = tile.rows,
                       .left = tile.left,
@@ -122,8 +120,6 @@ class Gathering {
                       .opaque = layers_.opaque,
                       .gap = rays_.gap(),
                       .sums = &memory.sums[channel]};
-    if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
-    const Limits reach = reach_of(range.least, range.most);
     constexpr std::size_t margin = 4;  // steps begin before and end after the range
     TileRays rays{
         .count = rays_.rays_of_set(),
@@ -291,7 +287,9 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     throw wrong("highlights_above = " + to_text(options.highlights_above) + "; must be at least 0 (0: off)");
   }
   const DepthRange depths = LayerAccess::data(layers).depths();
-  const double reach = depths.empty() ? 0 : rays.reach_px(depths.least, depths.most);
+  const RayData& data = RayAccess::data(rays);
+  const double bound = data.farthest_px + static_cast<double>(std::max(depths.most, 0.0f)) * data.largest_slope + 1;
+  const double reach = depths.empty() || bound <= most_reach_px ? 0 : rays.reach_px(depths.least, depths.most);
   if (!(reach <= most_reach_px)) {
     throw wrong("rays reach " + to_text(reach, 6) + " px beyond the picture; must be at most " +
                 to_text(most_reach_px) + ": the nearest surface is " +

@@ -603,28 +603,42 @@ std::uint64_t follow_registers(const TileJob& job, const TileRays& rays, const L
   return made;
 }
 
-/// Follows the rays of a tile block by block. If the lines differ nowhere, as for thin lenses, the tile is one block.
+/// Measures by how much the lines of a block differ from the line at its middle, beyond the tolerance.
+/// @return the number of rays whose lines differ by more than the tolerance
+PETZVAL_INLINE int measure_excess(const TileJob& job, const TileRays& rays, const Lines& lines, int columns,
+                                  int rows) noexcept {
+  const auto half_of = [](int length, int all) {
+    return Numbers(0.5f * static_cast<float>(length < all ? length - 1 : length) / static_cast<float>(all));
+  };
+  const Numbers half_across = half_of(columns, job.columns), half_down = half_of(rows, job.rows), none(0.0f), one(1.0f);
+  Numbers differing = none;
+  for (std::size_t i = 0; i < rays.row_stride; i += static_cast<std::size_t>(width)) {
+    Numbers beyond = none;
+    for (const auto& [depth, px] : rays.tolerances)
+      beyond = larger(beyond, lines.change(i, Numbers(depth), half_across, half_down) - Numbers(px));
+    store(rays.excess() + i, beyond);
+    differing = differing + only(all_of(beyond > none, first_lanes(rays.row_stride - i)), one);
+  }
+  float sum = 0;
+  for (int l = 0; l < width; ++l) sum += differing.v[l];
+  return static_cast<int>(sum);
+}
+
+/// Follows the rays of a tile block by block. Blocks are as large as the tolerance permits; the tile is one block if
+/// its lines differ nowhere, as for thin lenses.
 template <int side, bool opaque, int colours>
 std::uint64_t follow_sets(const TileJob& job, const TileRays& rays) noexcept {
   constexpr int at_once = width == 16 ? 4 : 2;
-  constexpr int block_columns = width, block_rows = 4 * side;  // where lines differ
   const Lines lines(rays);
-  const Numbers half_across(0.5f * static_cast<float>(block_columns - 1) / static_cast<float>(job.columns)),
-      half_down(0.5f * static_cast<float>(block_rows - 1) / static_cast<float>(job.rows)), half(0.5f);
-  // By how much lines of a block differ from the line at its middle, beyond the tolerance.
-  float* const excess = rays.excess();
-  bool one_block = true;
-  for (std::size_t i = 0; i < rays.row_stride; i += static_cast<std::size_t>(width)) {
-    Numbers beyond(0.0f);
-    Mask alike = first_lanes(width);
-    for (const auto& [depth, px] : rays.tolerances) {
-      beyond = larger(beyond, lines.change(i, Numbers(depth), half_across, half_down) - Numbers(px));
-      alike = all_of(alike, lines.change(i, Numbers(depth), half, half) <= Numbers(px));
-    }
-    store(excess + i, beyond);
-    one_block &= !any(without(first_lanes(rays.row_stride - i), alike));
+  int columns = job.columns, rows = job.rows;
+  while (measure_excess(job, rays, lines, columns, rows) > 0) {
+    if (columns > width && (columns > rows || rows <= 4 * side))
+      columns = (columns / 2 + width - 1) / width * width;
+    else if (rows > 4 * side)
+      rows = (rows / 2 + side * side - 1) / (side * side) * (side * side);
+    else
+      break;
   }
-  const int columns = one_block ? job.columns : block_columns, rows = one_block ? job.rows : block_rows;
   BlockSteps block(rays);
   std::uint64_t made = 0;
   for (int set = 0; set < side * side; ++set) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -140,20 +141,16 @@ void Highlights::find(const GatherOptions& options) {
     }
   }
   const RayTable& table = rays_.table;
-  std::vector<CoveredArea> areas;
-  for (std::size_t row = 0; row < table.node_rows; ++row) {
-    for (std::size_t column = 0; column < table.node_columns; ++column) {
-      areas.emplace_back(table.node(0, row, column), table.rays);
-    }
-  }
+  std::vector<std::optional<CoveredArea>> areas(table.node_rows * table.node_columns);
   const auto node = [&](int position, int end, std::size_t nodes) {
     const int within = std::clamp(position - overscan_, 0, end);
     return std::min(static_cast<std::size_t>(within / table.step), nodes - 1);
   };
   for (Highlight& h : bright) {
-    h.area = static_cast<float>(areas[node(h.row, table.area.rows, table.node_rows) * table.node_columns +
-                                      node(h.column, table.area.columns, table.node_columns)]
-                                    .at(h.inverse_depth));
+    const std::size_t at = node(h.row, table.area.rows, table.node_rows) * table.node_columns +
+                           node(h.column, table.area.columns, table.node_columns);
+    if (!areas[at]) areas[at].emplace(table.nodes.data() + at * table.node_size(), table.rays);
+    h.area = static_cast<float>(areas[at]->at(h.inverse_depth));
   }
   // A wide bright surface needs no stamps, because enough rays of each pixel meet it. Much dimmer surfaces, such as a
   // white wall behind a lamp, are not counted. Blocks of one pixel: with larger blocks, the count would depend on the

@@ -106,6 +106,7 @@ struct Spread {
   double differ_px = 0;  ///< lines at infinity and at the nearest depth, along columns or rows
   double light = 0;      ///< weights
   double steepest = 0;   ///< largest |slope|, px mm
+  double farthest = 0;   ///< largest |position| relative to the pixel, px
 };
 
 Spread spread_of(const RayTable& t, double nearest) {
@@ -119,6 +120,7 @@ Spread spread_of(const RayTable& t, double nearest) {
         for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
           spread.differ_px = std::max({spread.differ_px, off(at), off(at) + nearest * off(slope)});
           spread.steepest = std::max(spread.steepest, std::abs(static_cast<double>(here[slope * n + i])));
+          spread.farthest = std::max(spread.farthest, std::abs(static_cast<double>(here[at * n + i])));
         }
         spread.light = std::max(spread.light, off(weight));
       }
@@ -179,7 +181,7 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   if (tried.size() != points.size()) d->table = table(d->table.step, points);
 
   const Spread spread = spread_of(d->table, nearest);
-  d->largest_slope = spread.steepest;
+  d->largest_slope = spread.steepest, d->farthest_px = spread.farthest;
   d->shift_invariant = spread.differ_px <= same_px && spread.light <= 1e-6;
   if (options.over_pixels) spread_over_pixels(d->table);
   data_ = std::move(d);

@@ -102,6 +102,21 @@ void RayTable::at(std::size_t channel, double column, double row, float* found) 
   }
 }
 
+const float* RayTable::rows_at(std::size_t channel, double column, double row, std::vector<float>& scratch) const {
+  constexpr std::size_t beyond = 64;
+  const Cell x = cell_at(column - area.left, step, node_columns, area.columns),
+             y = cell_at(row - area.top, step, node_rows, area.rows);
+  const auto whole = [](float fraction) { return fraction == 0 || fraction == 1; };
+  if (whole(x.fraction) && whole(y.fraction)) {
+    const float* const at =
+        node(channel, y.first + static_cast<std::size_t>(y.fraction), x.first + static_cast<std::size_t>(x.fraction));
+    if (at + node_size() + beyond <= nodes.data() + nodes.size()) return at;
+  }
+  scratch.resize(node_size() + beyond);
+  this->at(channel, column, row, scratch.data());
+  return scratch.data();
+}
+
 void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept {
   const Cell x = cell_at(column - area.left, step, node_columns, area.columns),
              y = cell_at(row - area.top, step, node_rows, area.rows);

@@ -36,6 +36,8 @@ struct RayTable {
   double row_of(std::size_t node) const noexcept;
   /// The rows at a position in the area, interpolated between the nodes around it: node_size() numbers.
   void at(std::size_t channel, double column, double row, float* found) const noexcept;
+  /// The rows at a position: of a node there, or interpolated to `scratch`. Readable up to 64 numbers beyond.
+  const float* rows_at(std::size_t channel, double column, double row, std::vector<float>& scratch) const;
   /// The rows of one ray at a position: row_count numbers.
   void ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept;
 };
@@ -58,6 +60,7 @@ struct LensRays::Data {
   LensRaysOptions options;
   blur_detail::RayTable table;
   double interpolation_error_px = 0, largest_slope = 0;
+  double farthest_px = 0;  ///< largest distance of a ray at infinity from its pixel, along columns or rows
   bool shift_invariant = false;
 
   /// Rays of a channel over an area of the picture, for lights that would appear as dots with few rays. The pupil
