@@ -5,7 +5,7 @@
 //
 //   build/tests/bench/blur_bench [--full]
 //
-// 400 x 300 pixels, one round, 100 mm; --full: 800 x 600, three rounds, and variations of layers, rays and lenses.
+// 400 x 300 pixels, one round, 100 mm; --full: 800 x 600, three rounds, and variations of layers and lenses.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -159,28 +159,6 @@ void report_layers(const Settings& settings, const LoadedScene& scene) {
   std::fflush(stdout);
 }
 
-/// Similarity to a reference of 512 rays, at half the size.
-void report_rays(Settings settings, const LoadedScene& scene) {
-  settings.columns /= 2, settings.rows /= 2;
-  lens_blur::LensFlags flags = thin_lens(100);
-  flags.pattern.rays = 512;
-  const RgbImage reference = scene.through(settings, flags).reference();
-  std::printf("| %s |", scene.name.c_str());
-  for (const unsigned rays : {32U, 64U, 100U, 256U}) {
-    flags.pattern.rays = rays;
-    const View view = scene.through(settings, flags);
-    petzval::LayerSet layers;
-    petzval::BlurredImage picture;
-    view.peel(4, layers);
-    double ms = 0;
-    for (int round = 0; round < settings.rounds; ++round)
-      keep_least(ms, time_of([&] { view.gather(layers, picture); }));
-    std::printf(" %.1f, %.0f |", lens_blur::likeness(colours_of(picture), reference).psnr_db, ms);
-  }
-  std::printf("\n");
-  std::fflush(stdout);
-}
-
 /// Lenses whose rays differ between pixels, and the largest lens of the paper.
 void report_lenses(const Settings& settings, const LoadedScene& scene) {
   struct Row {
@@ -301,10 +279,6 @@ int run(std::vector<char*> arguments) {
 
   std::printf("\n| PSNR, missed %%, by layers, 100 mm | 1 | 2 | 4 | 8 |\n|---|---|---|---|---|\n");
   for (const auto& scene : scenes) report_layers(settings, *scene);
-  std::printf(
-      "\n| PSNR to 512 rays, gather ms, by rays, 100 mm, half the size | 32 | 64 | 100 | 256 "
-      "|\n|---|---|---|---|---|\n");
-  for (const auto& scene : scenes) report_rays(settings, *scene);
   std::printf(
       "\n| lens | peel, N-buffer | gather | reference, times as slow as gather, as both | PSNR/SSIM | missed, %% | "
       "lines of each pixel: times as slow |\n|---|---|---|---|---|---|---|\n"

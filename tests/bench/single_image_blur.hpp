@@ -24,3 +24,10 @@ struct CircleOfConfusion {
 /// background, tiles with the largest discs).
 petzval::RgbImage single_image_blur(const petzval::LayerSet& layers, const petzval::LayerCamera& camera,
                                     const CircleOfConfusion& circle, int taps, int threads);
+
+/// Blurs the first layer by filters of rows and columns: discs are sums of two complex Gaussians. The fields behind and
+/// before the plane of focus are filtered separately, the field before with the largest disc that reaches a tile.
+///
+/// Source: Garcia 2017, "Circular separable convolution depth of field" (kernels with two components).
+petzval::RgbImage separable_blur(const petzval::LayerSet& layers, const petzval::LayerCamera& camera,
+                                 const CircleOfConfusion& circle, int threads);
