@@ -37,35 +37,43 @@ struct Tile {
 class Gathering {
  public:
   Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, const GatherMethod& method,
-            int overscan, const Highlights& highlights, BlurredImage& picture)
+            int overscan, const Highlights& highlights, const RasterArea& region, BlurredImage& picture)
       : layers_(LayerAccess::data(layers)),
         rays_(RayAccess::data(rays)),
         options_(options),
         method_(method),
         overscan_(overscan),
         highlights_(highlights),
+        region_(region),
         picture_(picture),
         all_(layers_.depths()),
-        farthest_(all_.empty() ? 0 : all_.least) {}
-
-  void run() {
+        farthest_(all_.empty() ? 0 : all_.least) {
     // The corners of a tile lie in one cell of the table, and its rays are interpolated between the corners.
     tile_columns_ = std::min(rays_.table.step, TileSums::columns);
     tile_rows_ = std::min(rays_.table.step, TileSums::rows);
-    const int across = (picture_.columns + tile_columns_ - 1) / tile_columns_,
-              down = (picture_.rows + tile_rows_ - 1) / tile_rows_;
-    parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 4, options_.threads,
-                 [&](std::size_t begin, std::size_t end) {
-                   const BlurredImage::Memory::Loan loan(*picture_.memory);
-                   for (std::size_t t = begin; t < end; ++t) {
-                     keep_on(options_.stop, "gather");
-                     const int left = static_cast<int>(t) % across * tile_columns_,
-                               top = static_cast<int>(t) / across * tile_rows_;
-                     follow({left, top, std::min(tile_columns_, picture_.columns - left),
-                             std::min(tile_rows_, picture_.rows - top)},
-                            *loan);
-                   }
-                 });
+    tiles_ = {region.left / tile_columns_, region.top / tile_rows_};
+    tiles_.columns = (region.left + region.columns - 1) / tile_columns_ - tiles_.left + 1;
+    tiles_.rows = (region.top + region.rows - 1) / tile_rows_ - tiles_.top + 1;
+  }
+
+  std::size_t tile_count() const noexcept {
+    return static_cast<std::size_t>(tiles_.columns) * static_cast<std::size_t>(tiles_.rows);
+  }
+
+  void run(GatherProgress& progress) {
+    progress_ = &progress;
+    parallel_for(tile_count(), 4, options_.threads, [this](std::size_t begin, std::size_t end) {
+      const BlurredImage::Memory::Loan loan(*picture_.memory);
+      const RasterArea& image = rays_.table.area;
+      for (std::size_t t = begin; t < end; ++t) {
+        keep_on(options_.stop, "gather");
+        const int left = (tiles_.left + static_cast<int>(t) % tiles_.columns) * tile_columns_,
+                  top = (tiles_.top + static_cast<int>(t) / tiles_.columns) * tile_rows_;
+        follow({left, top, std::min(tile_columns_, image.columns - left), std::min(tile_rows_, image.rows - top)},
+               *loan);
+        progress_->add(1);
+      }
+    });
     picture_.step_count = steps_;
     picture_.missed_count = missed_;
   }
@@ -206,9 +214,10 @@ class Gathering {
     const std::size_t channels = rays_.table.channels;
     const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
     double missed = 0;
-    for (int row = 0; row < tile.rows; ++row) {
-      int at = row * TileSums::columns;
-      const int end = at + tile.columns;
+    const RasterArea part = common({tile.left, tile.top, tile.columns, tile.rows}, region_);
+    for (int row = part.top; row < part.top + part.rows; ++row) {
+      int at = (row - tile.top) * TileSums::columns + part.left - tile.left;
+      const int end = at + part.columns;
       // In most rows all rays meet surfaces.
       bool all_met = layers_.opaque;
       for (std::size_t c = 0; c < channels && all_met; ++c) {
@@ -219,11 +228,12 @@ class Gathering {
         return channels == 1 ? memory.sums[0].colour[c] : memory.sums[c].colour[0];
       };
       const float *const red = colour(0), *const green = colour(1), *const blue = colour(2);
-      const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile.top + row) * picture_.columns + tile.left;
+      const std::ptrdiff_t pixel =
+          static_cast<std::ptrdiff_t>(row - region_.top) * picture_.columns + part.left - region_.left;
       float *rgba = picture_.rgba.data() + 4 * pixel, *unseen = picture_.missed.data() + pixel;
-      for (int column = tile.left; at < end; ++at, ++column, rgba += 4, ++unseen) {
+      for (int column = part.left; at < end; ++at, ++column, rgba += 4, ++unseen) {
         rgba[0] = red[at] * per_ray, rgba[1] = green[at] * per_ray, rgba[2] = blue[at] * per_ray, rgba[3] = 1;
-        *unseen = all_met ? 0 : compose(memory, at, column, tile.top + row, rgba);
+        *unseen = all_met ? 0 : compose(memory, at, column, row, rgba);
         missed += static_cast<double>(*unseen);
       }
     }
@@ -261,7 +271,9 @@ class Gathering {
   GatherMethod method_;
   int overscan_, tile_columns_ = 0, tile_rows_ = 0;
   const Highlights& highlights_;
+  RasterArea region_, tiles_;  ///< pixels of the picture, and the tiles with such pixels (in tiles)
   BlurredImage& picture_;
+  GatherProgress* progress_ = nullptr;
   DepthRange all_;
   float farthest_;  ///< inverse depth at which rays end
   std::atomic<std::uint64_t> steps_ = 0, missed_ = 0;
@@ -295,24 +307,38 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
                 to_text(most_reach_px) + ": the nearest surface is " +
                 to_text(1 / static_cast<double>(depths.most), 6) + " mm away");
   }
+  const RasterArea image{0, 0, camera.columns, camera.rows},
+      region = options.left == 0 && options.top == 0 && options.columns == 0 && options.rows == 0
+                   ? image
+                   : RasterArea{options.left, options.top, options.columns, options.rows};
+  if (region.left < 0 || region.top < 0 || region.columns < 1 || region.rows < 1 ||
+      region.columns > image.columns - region.left || region.rows > image.rows - region.top) {
+    throw wrong("region: columns x rows = " + std::to_string(region.columns) + " x " + std::to_string(region.rows) +
+                " from column " + std::to_string(region.left) + ", row " + std::to_string(region.top) +
+                "; must be within the picture's " + std::to_string(image.columns) + " x " + std::to_string(image.rows));
+  }
 
   try {
-    const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);
-    picture.columns = camera.columns, picture.rows = camera.rows;
+    const auto pixels = static_cast<std::size_t>(region.columns) * static_cast<std::size_t>(region.rows);
+    picture.columns = region.columns, picture.rows = region.rows;
     picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
     picture.ray_count = pixels * rays.count() * static_cast<std::size_t>(rays.channels());
     picture.missed_count = picture.step_count = picture.highlight_count = 0;
     if (!picture.memory) picture.memory = std::make_shared<BlurredImage::Memory>();
 
     auto start = std::chrono::steady_clock::now();
-    const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
+    const auto highlights = picture.memory->highlights(layers, rays, options, beyond / 2);
+    const auto jobs = highlights->jobs_in(region);
+    Gathering gathering(layers, rays, options, method, beyond / 2, *highlights, region, picture);
+    GatherProgress progress(options, gathering.tile_count() + jobs.size());
+    progress.add(0);
     const double finding = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Gathering(layers, rays, options, method, beyond / 2, highlights, picture).run();
+    gathering.run(progress);
     picture.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    highlights.spread(options, picture);
-    picture.highlight_count = highlights.count();
+    highlights->spread(jobs, region, options, progress, picture);
+    picture.highlight_count = highlights->count();
     picture.highlight_seconds = finding + seconds_since(start);
   } catch (...) {
     picture.columns = picture.rows = 0, picture.rgba.clear(), picture.missed.clear();

@@ -140,6 +140,7 @@ void Highlights::find(const GatherOptions& options) {
       }
     }
   }
+  if (bright.empty()) return;
   const RayTable& table = rays_.table;
   std::vector<std::optional<CoveredArea>> areas(table.node_rows * table.node_columns);
   const auto node = [&](int position, int end, std::size_t nodes) {
@@ -147,10 +148,11 @@ void Highlights::find(const GatherOptions& options) {
     return std::min(static_cast<std::size_t>(within / table.step), nodes - 1);
   };
   for (Highlight& h : bright) {
-    const std::size_t at = node(h.row, table.area.rows, table.node_rows) * table.node_columns +
-                           node(h.column, table.area.columns, table.node_columns);
-    if (!areas[at]) areas[at].emplace(table.nodes.data() + at * table.node_size(), table.rays);
-    h.area = static_cast<float>(areas[at]->at(h.inverse_depth));
+    const std::size_t row = node(h.row, table.area.rows, table.node_rows),
+                      column = node(h.column, table.area.columns, table.node_columns);
+    std::optional<CoveredArea>& area = areas[row * table.node_columns + column];
+    if (!area) area.emplace(table.node(0, row, column), table.rays);
+    h.area = static_cast<float>(area->at(h.inverse_depth));
   }
   // A wide bright surface needs no stamps, because enough rays of each pixel meet it. Much dimmer surfaces, such as a
   // white wall behind a lamp, are not counted. Blocks of one pixel: with larger blocks, the count would depend on the
@@ -425,7 +427,7 @@ const Highlight& Highlights::brightest(const Group& group) const {
                                        [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); })];
 }
 
-RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
+RasterArea Highlights::around(const Group& group, std::size_t channel) const {
   const RayTable& table = rays_.table;
   const Highlight& light = brightest(group);
   std::vector<float> rows(table.node_size());
@@ -440,11 +442,13 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
     const int x = column - along(at_x, slope_x), y = row - along(at_y, slope_y);
     left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
   }
+  return {left, top, right - left, bottom - top};
+}
+
+RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
+  const RasterArea rays = around(group, channel);
   // The blur changes over the picture, and highlights of one group are up to a cell apart.
-  const int margin = 2 + group_cell + std::max(right - left, bottom - top) / 8;
-  left = std::max(left - margin, 0), right = std::min(right + margin, table.area.columns);
-  top = std::max(top - margin, 0), bottom = std::min(bottom + margin, table.area.rows);
-  return left < right && top < bottom ? RasterArea{left, top, right - left, bottom - top} : RasterArea{};
+  return common(grown(rays, 2 + group_cell + std::max(rays.columns, rays.rows) / 8), rays_.table.area);
 }
 
 std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, std::size_t channel,
@@ -471,35 +475,62 @@ std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, s
   return stamps;
 }
 
-void Highlights::spread(const GatherOptions& options, BlurredImage& picture) const {
-  const std::size_t channels = rays_.table.channels;
+std::vector<Highlights::Job> Highlights::jobs_in(const RasterArea& region) const {
+  std::vector<Job> jobs;
+  for (const Group& group : groups_) {
+    // Each highlight has the stamp of the brightest of its group.
+    const Highlight& light = brightest(group);
+    int left = 0, right = 0, top = 0, bottom = 0;
+    for (const std::size_t member : group) {
+      const int x = highlights_[member].column - light.column, y = highlights_[member].row - light.row;
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+    for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
+      const RasterArea rays = around(group, channel);
+      const int margin = 12 + std::max(rays.columns, rays.rows) / 8;  // tents; more rays than in the table
+      const RasterArea bounds =
+          grown({rays.left + left, rays.top + top, rays.columns + right - left, rays.rows + bottom - top}, margin);
+      if (common(bounds, region).columns > 0) jobs.push_back({&group, channel, bounds});
+    }
+  }
+  return jobs;
+}
+
+void Highlights::spread(const std::vector<Job>& jobs, const RasterArea& region, const GatherOptions& options,
+                        GatherProgress& progress, BlurredImage& picture) const {
   constexpr std::size_t batch_size = 64;
-  std::vector<std::vector<SharedStamp>> stamps(channels * std::min(batch_size, groups_.size()));
-  for (std::size_t begin = 0; begin < groups_.size(); begin += batch_size) {
-    const std::size_t count = channels * std::min(batch_size, groups_.size() - begin);
+  std::vector<std::vector<SharedStamp>> stamps(std::min(batch_size, jobs.size()));
+  for (std::size_t begin = 0; begin < jobs.size(); begin += batch_size) {
+    const std::size_t count = std::min(batch_size, jobs.size() - begin);
     parallel_for(count, 1, options.threads, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i)
-        stamps[i] = stamps_of(groups_[begin + i / channels], i % channels, options.stop);
+      for (std::size_t i = first; i < end; ++i) {
+        stamps[i] = stamps_of(*jobs[begin + i].group, jobs[begin + i].channel, options.stop);
+        progress.add(1);
+      }
     });
     // In sequence, so that the sums do not depend on the number of threads.
     for (std::size_t i = 0; i < count; ++i) {
       for (const auto& [members, stamp] : stamps[i]) {
         keep_on(options.stop, "gather");
-        for (const std::size_t member : members) add(stamp, highlights_[member], i % channels, picture);
+        for (const std::size_t member : members) add(stamp, highlights_[member], jobs[begin + i], region, picture);
       }
     }
   }
 }
 
-void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, BlurredImage& picture) const {
+void Highlights::add(const Stamp& stamp, const Highlight& h, const Job& job, const RasterArea& region,
+                     BlurredImage& picture) const {
   float light[4] = {};
-  for (std::size_t c = 0; c < 3; ++c) light[c] = rays_.table.channels == 1 || c == channel ? h.light[c] : 0;
+  for (std::size_t c = 0; c < 3; ++c) light[c] = rays_.table.channels == 1 || c == job.channel ? h.light[c] : 0;
   const int left = stamp.left + h.column, top = stamp.top + h.row;
-  const int first = std::max(0, -left), last = std::min(stamp.columns, picture.columns - left);
-  for (int row = std::max(0, -top); row < std::min(stamp.rows, picture.rows - top); ++row) {
-    const float* const of_row = &stamp.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(stamp.columns)];
-    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(top + row) * picture.columns + left);
-    for (int column = first; column < last; ++column) {
+  // Within the bounds, so that a region without this job has the bits of the whole image.
+  const RasterArea to = common(common({left, top, stamp.columns, stamp.rows}, job.bounds), region);
+  for (int row = to.top; row < to.top + to.rows; ++row) {
+    const float* const of_row =
+        stamp.light.data() + static_cast<std::ptrdiff_t>(row - top) * stamp.columns + to.left - left;
+    float* const rgba = picture.rgba.data() +
+                        4 * (static_cast<std::ptrdiff_t>(row - region.top) * picture.columns + to.left - region.left);
+    for (int column = 0; column < to.columns; ++column) {
       for (int c = 0; c < 4; ++c) rgba[4 * column + c] += of_row[column] * light[c];
     }
   }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <thread>
 #include <vector>
 
 #include "gather_loops.hpp"
@@ -34,6 +36,24 @@ class CountsIn {
   std::vector<std::uint32_t> before_;  ///< number of highlights in the blocks above and to the left
 };
 
+/// Progress of a call of gather().
+class GatherProgress {
+ public:
+  GatherProgress(const GatherOptions& options, std::size_t steps) : options_(options), steps_(steps) {}
+  /// @throws Cancelled if GatherOptions::progress returns false
+  void add(std::size_t steps) {
+    done_ += steps;
+    if (!options_.progress || std::this_thread::get_id() != caller_) return;
+    if (!options_.progress(static_cast<double>(done_) / static_cast<double>(steps_))) throw Cancelled("gather");
+  }
+
+ private:
+  const GatherOptions& options_;
+  std::size_t steps_;
+  std::atomic<std::size_t> done_ = 0;
+  std::thread::id caller_ = std::this_thread::get_id();
+};
+
 /// Bright pixels that would appear as patterns of dots with few rays. Their light is removed from the layers and
 /// distributed over the pixels whose rays meet it.
 class Highlights {
@@ -46,12 +66,21 @@ class Highlights {
   /// Removes the light of the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride`
   /// apart, with rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
-  /// Adds the light of the highlights to the picture.
-  void spread(const GatherOptions& options, BlurredImage& picture) const;
-
- private:
   /// Adjacent highlights of nearly equal depth, which the same rays meet: indices in found_.
   using Group = std::vector<std::size_t>;
+  /// A group in a channel, and a rectangle around its light.
+  struct Job {
+    const Group* group;
+    std::size_t channel;
+    RasterArea bounds;
+  };
+  /// The jobs whose light may reach a region of the image.
+  std::vector<Job> jobs_in(const RasterArea& region) const;
+  /// Adds the light of jobs to the picture of a region, and a step for each job to the progress.
+  void spread(const std::vector<Job>& jobs, const RasterArea& region, const GatherOptions& options,
+              GatherProgress& progress, BlurredImage& picture) const;
+
+ private:
   struct Stamp;
   struct SharedStamp;
   struct Splat;
@@ -70,10 +99,13 @@ class Highlights {
   static void set_tents(std::vector<Splat>& splats, std::size_t rays, double area);
   static void contract(std::vector<Splat>& splats);
   const Highlight& brightest(const Group& group) const;
+  /// A rectangle around the pixels whose rays meet the brightest highlight of a group.
+  RasterArea around(const Group& group, std::size_t channel) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
   std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel, const std::stop_token& stop) const;
-  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, BlurredImage& picture) const;
+  void add(const Stamp& stamp, const Highlight& highlight, const Job& job, const RasterArea& region,
+           BlurredImage& picture) const;
   /// Finds the fraction of each line that surfaces in front of the highlight transmit.
   /// @param through 1 for each line, and a register more
   void hide(const Highlight& highlight, const Lines& lines, std::size_t count, std::vector<float>& through) const;

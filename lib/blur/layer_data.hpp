@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "n_buffer.hpp"
@@ -22,6 +23,7 @@ struct LayerSet::Data {
   int capacity = 0;  ///< number of layers that the memory has room for
   bool opaque = true;
   double n_buffer_seconds = 0;
+  std::uint64_t filling = 0;  ///< number of the last filling; no two sets have equal numbers
   std::vector<float> memory, below;
   std::vector<float> brightest;  ///< [layer][row] largest colour of the surfaces, at least 0
   blur_detail::NBuffer n_buffer;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -56,6 +57,8 @@ float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
 }  // namespace
 
 LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) : data_(data) {
+  static std::atomic<std::uint64_t> fillings = 0;
+  data.filling = ++fillings;
   data.columns = data.rows = data.count = 0, data.planes = 3, data.opaque = true;  // also if memory runs out
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   data.below.assign(pixels, infinity);

@@ -142,6 +142,25 @@ void spread_over_pixels(RayTable& table) {
   }
 }
 
+/// Calls f(x, y, dx, dy) for the rays of all nodes at two inverse depths: raster position, and offset of the ray.
+template <class F>
+void each_offset(const RayTable& t, double least, double most, const F& f) {
+  const std::size_t n = t.rays;
+  for (std::size_t channel = 0; channel < t.channels; ++channel) {
+    for (std::size_t row = 0; row < t.node_rows; ++row) {
+      for (std::size_t column = 0; column < t.node_columns; ++column) {
+        const float* const node = t.node(channel, row, column);
+        for (std::size_t i = 0; i < n; ++i) {
+          for (const double w : {least, most}) {
+            f(t.column_of(column), t.row_of(row), node[at_x * n + i] + w * node[slope_x * n + i],
+              node[at_y * n + i] + w * node[slope_y * n + i]);
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Cancelled::~Cancelled() = default;  // anchors the type information in this library
@@ -197,27 +216,21 @@ double LensRays::nearest_mm() const noexcept { return data_->options.nearest_mm;
 double LensRays::largest_slope() const noexcept { return data_->largest_slope; }
 
 double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth) const noexcept {
-  const RayTable& t = data_->table;
-  const std::size_t n = t.rays;
+  const RasterArea& area = data_->table.area;
   double reach = 0;
-  for (std::size_t channel = 0; channel < t.channels; ++channel) {
-    for (std::size_t row = 0; row < t.node_rows; ++row) {
-      for (std::size_t column = 0; column < t.node_columns; ++column) {
-        // Inside the area, a node's offset reaches beyond the area only by the part that exceeds its distance from the
-        // edge.
-        const double x = t.column_of(column), y = t.row_of(row);
-        const float* const node = t.node(channel, row, column);
-        for (std::size_t i = 0; i < n; ++i) {
-          for (const double w : {least_inverse_depth, most_inverse_depth}) {
-            const double px = x + node[at_x * n + i] + w * node[slope_x * n + i],
-                         py = y + node[at_y * n + i] + w * node[slope_y * n + i];
-            reach = std::max({reach, -px, px - t.area.columns, -py, py - t.area.rows});
-          }
-        }
-      }
-    }
-  }
+  // Inside the area, a node's offset reaches beyond the area only by the part that exceeds its distance from the edge.
+  each_offset(data_->table, least_inverse_depth, most_inverse_depth, [&](double x, double y, double dx, double dy) {
+    reach = std::max({reach, -x - dx, x + dx - area.columns, -y - dy, y + dy - area.rows});
+  });
   return reach;
+}
+
+double LensRays::offset_px(double least_inverse_depth, double most_inverse_depth) const noexcept {
+  double offset = 0;
+  each_offset(data_->table, least_inverse_depth, most_inverse_depth, [&](double, double, double dx, double dy) {
+    offset = std::max({offset, std::abs(dx), std::abs(dy)});
+  });
+  return offset;
 }
 
 RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t first, std::size_t end,

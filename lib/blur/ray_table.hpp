@@ -20,6 +20,16 @@ struct RasterArea {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
+inline RasterArea grown(const RasterArea& a, int by) noexcept {
+  return {a.left - by, a.top - by, a.columns + 2 * by, a.rows + 2 * by};
+}
+/// The common part of two rectangles; without columns and rows if they are disjoint.
+inline RasterArea common(const RasterArea& a, const RasterArea& b) noexcept {
+  const int left = std::max(a.left, b.left), top = std::max(a.top, b.top),
+            right = std::min(a.left + a.columns, b.left + b.columns), bottom = std::min(a.top + a.rows, b.top + b.rows);
+  return left < right && top < bottom ? RasterArea{left, top, right - left, bottom - top} : RasterArea{};
+}
+
 /// Rays at nodes over an area: every `step` pixels from its upper left corner, and at its right and lower edges.
 struct RayTable {
   RasterArea area;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -309,6 +310,51 @@ TEST(Gather, IndependentOfThreads) {
   }
 }
 
+/// The scene with lights at four depths, at the edges of regions and beyond the picture; some are partly hidden.
+std::vector<Surface> lights(double x, double y) {
+  std::vector<Surface> seen = boards(x, y);
+  for (Surface& s : seen) {
+    const double apart = 0.031 + 0.01 * s.inverse_depth * 1000;
+    if (std::hypot(std::remainder(x, apart), std::remainder(y, apart)) < 0.0025) s.red = 300, s.blue = 40;
+  }
+  return seen;
+}
+
+TEST(Gather, RegionsHaveTheBitsOfTheWholePicture) {
+  std::mt19937 random(5);
+  const LensRays coloured =
+      LensRays::thin(small_camera(), {.radius_mm = 25, .inverse_focus = 1 / 2000.0, .colour_shift = {1e-5, 0, -2e-5}},
+                     vogel_points(40), {.nearest_mm = 1000});
+  for (const LensRays& rays : {thin_rays(25), tilted_rays(25), coloured, tilted_rays(60, 8),
+                               tilted_rays(25, 20, {.nearest_mm = 1000, .set_count = 4})}) {
+    for (const Scene scene : {Scene(panes), Scene(lights)}) {
+      const LayerSet layers = layers_of(scene, rays), other = layers_of(boards, rays);
+      const BlurredImage whole = gather(layers, rays);
+      EXPECT_EQ(whole.highlight_count > 0, scene == Scene(lights));
+      std::vector<std::pair<int, int>> tiles;
+      constexpr int columns = 37, rows = 23;
+      for (int i = 0; i < 150 * 100; ++i) {
+        if (i % 150 % columns == 0 && i / 150 % rows == 0) tiles.emplace_back(i % 150, i / 150);
+      }
+      std::shuffle(tiles.begin(), tiles.end(), random);
+      BlurredImage picture;
+      gather(other, rays, {}, picture);  // the highlights of another scene must not stay
+      for (const auto& [left, top] : tiles) {
+        const int width = std::min(columns, 150 - left), height = std::min(rows, 100 - top);
+        gather(layers, rays, {.threads = 1 + left % 3, .left = left, .top = top, .columns = width, .rows = height},
+               picture);
+        ASSERT_EQ(picture.columns * picture.rows, width * height);
+        for (int i = 0; i < width * height; ++i) {
+          const auto at = static_cast<std::size_t>((top + i / width) * 150 + left + i % width),
+                     own = static_cast<std::size_t>(i);
+          ASSERT_TRUE(std::equal(&whole.rgba[4 * at], &whole.rgba[4 * at] + 4, &picture.rgba[4 * own])) << at;
+          ASSERT_EQ(whole.missed[at], picture.missed[own]) << at;
+        }
+      }
+    }
+  }
+}
+
 TEST(Gather, LeavesAnEmptyPictureIfCancelled) {
   for (const LensRays& rays :
        {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .set_count = 4})}) {
@@ -380,6 +426,9 @@ TEST(Gather, RefusesInconsistentInput) {
   says(LayerSet(), rays, {}, {"layers", 0, 0});
   says(layers, rays, {.highlights_above = -1}, {"highlights_above", -1});
   says(layers, rays, {.threads = 0}, {"threads", 0});
+  for (const auto& [left, columns] : {std::pair(-1, 9), {142, 9}, {0, -1}, {3, 0}, {2147483647, 9}, {1, 2147483647}}) {
+    says(layers, rays, {.left = left, .top = 1, .columns = columns, .rows = 5}, {"region", columns, left});
+  }
   // A surface 0.01 mm in front of a lens of 18 mm.
   FragmentLists near{
       .columns = 150, .rows = 100, .offsets = std::vector<std::size_t>(15001, 1), .fragments = {{0.01f, 1, 1, 1, 1}}};

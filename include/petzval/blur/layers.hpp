@@ -133,9 +133,6 @@ class PETZVAL_API LayerSet {
   LayerSet& operator=(LayerSet&&) noexcept;
   ~LayerSet();
 
-  /// @name Filling
-  /// @{
-
   /// Renders one layer and returns the number of pixels written.
   ///
   /// Each pixel of `out` receives the nearest surface with an inverse depth less than `below` (1/mm): infinity in the
@@ -168,10 +165,6 @@ class PETZVAL_API LayerSet {
   ///               front of it or behind an empty pixel, or an alpha is outside 0 to 1
   void set(std::span<const LayerImage> images);
 
-  /// @}
-  /// @name Queries
-  /// @{
-
   int columns() const noexcept;
   int rows() const noexcept;
   /// Number of layers that have a surface.
@@ -188,8 +181,6 @@ class PETZVAL_API LayerSet {
   double n_buffer_seconds() const noexcept;
   /// The layers as fragment lists, for files.
   FragmentLists fragments() const;
-
-  /// @}
 
  private:
   friend class LayerAccess;

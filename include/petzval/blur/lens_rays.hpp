@@ -162,9 +162,6 @@ class PETZVAL_API LensRays {
   static LensRays of(const Camera& camera, const LayerCamera& layers, std::span<const PupilPoint> points,
                      std::span<const Wavelength> wavelengths = {}, const LensRaysOptions& options = {});
 
-  /// @name Queries
-  /// @{
-
   const LayerCamera& camera() const noexcept;
   int channels() const noexcept;
   int set_count() const noexcept;
@@ -179,17 +176,13 @@ class PETZVAL_API LensRays {
   double largest_slope() const noexcept;
   /// Largest distance of rays beyond the image between these inverse depths (1/mm), px.
   double reach_px(double least_inverse_depth, double most_inverse_depth) const noexcept;
-
-  /// @}
-  /// @name Rays of a pixel
-  /// @{
+  /// Largest distance of a ray from its pixel, along columns or rows, between these inverse depths (1/mm), px.
+  double offset_px(double least_inverse_depth, double most_inverse_depth) const noexcept;
 
   /// The interpolated rays at the centre of a pixel. Fills count() rays.
   void at(int channel, int column, int row, std::span<LayerRay> rays) const;
   /// The rays at the centre of a pixel, computed by the source.
   void exact_rays_at(int channel, int column, int row, std::span<LayerRay> rays) const;
-
-  /// @}
 
  private:
   friend class RayAccess;
@@ -207,14 +200,20 @@ struct GatherOptions {
   /// Cancels gather() from another thread, within the time of about two tiles of 64 x 16 pixels: gather() throws
   /// Cancelled, and the picture is empty.
   std::stop_token stop{};
+  /// The region to compute, px; all 0: the whole image. The picture holds the pixels of the region, with the bits of
+  /// the whole image. Tiles of 64 x 16 pixels, in the grid of the image, are computed completely.
+  int left = 0, top = 0, columns = 0, rows = 0;
+  /// Called after each tile with the fraction done, by the thread that called gather(). Returns false to cancel.
+  std::function<bool(double)> progress{};
 };
 
-/// The result of gather(). It can be refilled without allocation if its size does not grow.
+/// The result of gather(). It can be refilled if its size does not grow, without allocation on one thread unless the
+/// layers have highlights. It also keeps the highlights of the last layers, so that the regions of an image are faster.
 ///
 /// Colours include the vignetting of the lens. `missed` and alpha are relative to the light that the lens passes at the
 /// pixel: a surface that fills a dark corner has alpha 1.
 struct BlurredImage {
-  int columns = 0, rows = 0;
+  int columns = 0, rows = 0;  ///< size of the region
   std::vector<float> rgba;    ///< columns x rows x 4, linear, premultiplied by alpha
   std::vector<float> missed;  ///< columns x rows: fraction of rays, by weight, that met regions unknown to the layers
   std::uint64_t ray_count = 0;
@@ -239,11 +238,12 @@ struct BlurredImage {
 /// @param layers   the scene; they extend beyond the image equally on all sides (PeelPlan::camera). Their border pixels
 ///                 are repeated outwards
 /// @param rays     the lens
-/// @param options  threads, highlights and cancelling
+/// @param options  threads, highlights, region, progress and cancelling
 /// @param picture  the result; left empty if an error occurs while it is filled
 /// @throws Error   if the layers do not fit the image, options are out of range, rays reach more than 16384 pixels
 ///                 beyond the image, or the rays of a tile need more than 256 MiB of layers beyond their edges
-/// @throws Cancelled  if `options.stop` requests a stop before the picture is complete
+/// @throws Cancelled  if `options.stop` requests a stop, or `options.progress` returns false, before the picture is
+///                    complete
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
