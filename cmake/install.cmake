@@ -66,7 +66,7 @@ if("yaml-cpp" IN_LIST formats_links)
 endif()
 petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES "${formats_yaml}")
 petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
-petzval_install(c DESCRIPTION "Lenses and cameras for renderers, in C and any C++" NEEDS core analysis formats)
+petzval_install(c DESCRIPTION "Lenses and cameras for renderers, in C and any C++" NEEDS core analysis blur formats)
 
 get_target_property(core_type petzval-core TYPE)
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}

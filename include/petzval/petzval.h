@@ -16,8 +16,8 @@
  * Structs and handles keep no pointers to memory of the caller.
  *
  * Threads: all functions may be called from any thread. Different handles are independent. Several threads may use one
- * handle, except in functions with `_set_` or `_free` in their names. A camera is independent of the lens from which it
- * was made.
+ * handle, except in functions with `_set_` or `_free` in their names, and except a petzval_blur. A camera is
+ * independent of the lens from which it was made.
  *
  * Units: the lens frame is right-handed and in mm: origin at the first vertex, light from the scene travels towards
  * +z. Rays, points and densities of a camera are in the frame and unit of petzval_camera_options. Raster position
@@ -40,9 +40,12 @@ extern "C" {
 /** Version of this interface: it grows by 1 when something is added. */
 #define PETZVAL_C_VERSION 1
 
-typedef struct petzval_glasses petzval_glasses; /**< a set of glasses */
-typedef struct petzval_lens petzval_lens;       /**< a compiled lens with its stop, iris and focus */
-typedef struct petzval_camera petzval_camera;   /**< a lens, a film and a ray model */
+typedef struct petzval_glasses petzval_glasses;     /**< a set of glasses */
+typedef struct petzval_lens petzval_lens;           /**< a compiled lens with its stop, iris and focus */
+typedef struct petzval_camera petzval_camera;       /**< a lens, a film and a ray model */
+typedef struct petzval_lens_rays petzval_lens_rays; /**< rays of a camera through layers, for all pixels */
+typedef struct petzval_layers petzval_layers;       /**< a scene as surfaces with colour and depth for each pixel */
+typedef struct petzval_blur petzval_blur;           /**< memory of petzval_gather() */
 
 /** Result of a call. */
 typedef int32_t petzval_status;
@@ -53,7 +56,8 @@ enum {
   PETZVAL_REFUSED = 3,      /**< a file, lens or value that cannot be used; petzval_message() gives the rule */
   PETZVAL_OUT_OF_MEMORY = 4,
   PETZVAL_NOT_BUILT = 5, /**< the library was built without this part */
-  PETZVAL_TOO_SMALL = 6  /**< the buffer is too small; `length`, if given, is the size that it needs */
+  PETZVAL_TOO_SMALL = 6, /**< the buffer is too small; `length`, if given, is the size that it needs */
+  PETZVAL_CANCELLED = 7  /**< a callback of the caller asked to cancel */
 };
 
 /** @return PETZVAL_OK if the library has the interface that this header declares. Pass PETZVAL_C_VERSION. */
@@ -483,6 +487,85 @@ PETZVAL_C_API petzval_status petzval_camera_point_image(const petzval_camera* ca
                                                         const petzval_psf_options* options, petzval_psf* psf,
                                                         float* image, size_t floats);
 
+/* ---- lens blur of layers --------------------------------------------------------------------------------------- */
+
+/**
+ * Options of lens rays. Depths are along the lens axis, from the pinhole in the middle of the entrance pupil. Rows
+ * begin at the top of the upright picture; colours are linear, unlimited and premultiplied by alpha. A picture has the
+ * pixels of the film. Layers have as many, or extend beyond the picture equally on all sides (overscan).
+ */
+typedef struct petzval_lens_rays_options {
+  size_t size;
+  int32_t count;        /**< rays of a pixel; 0: 100 */
+  int32_t set_count;    /**< sets of rays that adjacent pixels alternate, for grain instead of patterns: 4, 16; 0: 1 */
+  int32_t over_pixels;  /**< 1: rays start all over their pixel, for layers with a sample per pixel; 0: at its centre */
+  int32_t threads;      /**< 0: 1 */
+  double nearest_mm;    /**< depth of the nearest surface; 0: the focal length of an image 24 mm high */
+  const double* rgb_nm; /**< wavelengths of red, green and blue; NULL: the primary wavelength */
+} petzval_lens_rays_options;
+
+typedef struct petzval_lens_rays_info {
+  size_t size;
+  double focal_px, axis_px[2];   /**< a point (x, y, depth), y up, is seen at axis + focal (x, -y) / depth */
+  double pinhole_z_mm;           /**< lens frame */
+  double reach_px, offset_px;    /**< largest distance of rays beyond the picture, and of a ray from its pixel */
+  double bias;                   /**< 1/mm: surfaces nearer to the one in front, in inverse depth, are hidden */
+  int32_t columns, rows;         /**< of the picture */
+  int32_t overscan, most_layers; /**< of layers in which rays miss no surface */
+} petzval_lens_rays_info;
+
+typedef struct petzval_gather_options {
+  size_t size;
+  int32_t left, top, columns, rows; /**< pixels to compute, with the bits of the whole picture; all 0: the whole */
+  int32_t threads, unused;          /**< 0: 1; the picture is the same for every number */
+  double highlights_above;          /**< surfaces brighter than this become smooth discs; 0: 1; infinity: none */
+  /** NULL, or called by the caller's thread with the fraction done and `user` after each tile of 64 x 16 pixels.
+     Returns 1 to cancel. */
+  int32_t (*progress)(double, void*);
+  void* user;
+} petzval_gather_options;
+
+/** Tabulates the rays of a camera with a fixed focus. `options` may be NULL. */
+PETZVAL_C_API petzval_status petzval_lens_rays_create(const petzval_camera* camera,
+                                                      const petzval_lens_rays_options* options,
+                                                      petzval_lens_rays** rays);
+PETZVAL_C_API void petzval_lens_rays_free(petzval_lens_rays* rays);
+/** Facts for scenes between two depths. farthest_mm may be infinite. */
+PETZVAL_C_API petzval_status petzval_lens_rays_get_info(const petzval_lens_rays* rays, double nearest_mm,
+                                                        double farthest_mm, petzval_lens_rays_info* info);
+/**
+ * Makes layers from 1 to 64 images, from near to far. Refuses depths out of order, and alpha outside 0 to 1.
+ *
+ * - rgba, depth_mm: for each image 4 and 1 floats per pixel; depths: infinity: the sky; 0, negative or NaN: empty
+ */
+PETZVAL_C_API petzval_status petzval_layers_create(int32_t columns, int32_t rows, size_t count,
+                                                   const float* const* rgba, const float* const* depth_mm,
+                                                   petzval_layers** layers);
+/**
+ * Makes layers from deep samples of 5 floats (depth in mm, red, green, blue, alpha), in any order.
+ *
+ * - offsets: columns x rows + 1; pixel p has the samples offsets[p] to offsets[p + 1] - 1 of `count`
+ * - bias, most_layers: of petzval_lens_rays_info; 1 to 64: surfaces behind are dropped
+ */
+PETZVAL_C_API petzval_status petzval_layers_create_deep(int32_t columns, int32_t rows, const size_t* offsets,
+                                                        const float* samples, size_t count, double bias,
+                                                        int32_t most_layers, petzval_layers** layers);
+PETZVAL_C_API void petzval_layers_free(petzval_layers* layers);
+PETZVAL_C_API petzval_status petzval_blur_create(petzval_blur** blur);
+PETZVAL_C_API void petzval_blur_free(petzval_blur* blur);
+/**
+ * Renders the picture of layers through a lens, or a region of it, to memory of the caller, which is only written if
+ * the call succeeds. On one thread and without highlights, calls after the first of a size do not allocate.
+ *
+ * - options: may be NULL
+ * - blur: memory that is reused; it also keeps the highlights of the last layers
+ * - rgba, row_bytes: first pixel of the region, and distance of its rows; negative if the lowest row is first
+ * - missed: columns x rows fractions of rays that met surfaces unknown to the layers; may be NULL
+ */
+PETZVAL_C_API petzval_status petzval_gather(const petzval_layers* layers, const petzval_lens_rays* rays,
+                                            const petzval_gather_options* options, petzval_blur* blur, float* rgba,
+                                            ptrdiff_t row_bytes, float* missed);
+
 /* ---- initial values of structs --------------------------------------------------------------------------------- */
 
 /** petzval_film_init() and so on return a struct with `size` set and all other members 0. */
@@ -505,6 +588,9 @@ PETZVAL_INIT(petzval_camera_options)
 PETZVAL_INIT(petzval_camera_info)
 PETZVAL_INIT(petzval_psf_options)
 PETZVAL_INIT(petzval_psf)
+PETZVAL_INIT(petzval_lens_rays_options)
+PETZVAL_INIT(petzval_lens_rays_info)
+PETZVAL_INIT(petzval_gather_options)
 
 #ifdef __cplusplus
 }

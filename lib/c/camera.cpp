@@ -246,10 +246,7 @@ petzval_status petzval_camera_create(const petzval_lens* lens, const petzval_fil
     const auto options_in = received(options, "petzval_camera_options");
     CameraSetup setup = own.setup;
     setup.film = film_of(film), setup.camera = camera_options(options_in);
-    auto handle = std::make_unique<petzval_camera>();
-    handle->contents =
-        std::make_unique<CameraContents>(std::move(setup), host_options(options_in), own.glasses, own.lens);
-    *camera = handle.release();
+    give(std::make_shared<CameraContents>(std::move(setup), host_options(options_in), own.glasses, own.lens), camera);
   });
 }
 
@@ -288,9 +285,7 @@ petzval_status petzval_camera_write(const petzval_camera* camera, char* bytes, s
 petzval_status petzval_camera_read(const char* bytes, std::size_t count, petzval_camera** camera) {
   return guarded(results(camera), [&] {
     given(camera, "camera");
-    auto handle = std::make_unique<petzval_camera>();
-    handle->contents = read_camera({&given(bytes, "bytes"), count});
-    *camera = handle.release();
+    give(read_camera({&given(bytes, "bytes"), count}), camera);
   });
 }
 

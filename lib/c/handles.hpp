@@ -137,7 +137,30 @@ void copy_text(std::string_view text, char (&to)[n]) noexcept {
 void copy_bytes(std::string_view bytes, char* to, std::size_t capacity, std::size_t* length);
 
 /// The first member of a handle, which tells kinds of handles and freed handles apart.
-enum class Kind : std::uint32_t { glasses = 0x9e7a61a5, lens = 0x9e7a11e5, camera = 0x9e7aca3e, freed = 0xdead9e7a };
+enum class Kind : std::uint32_t {
+  glasses = 0x9e7a61a5,
+  lens = 0x9e7a11e5,
+  camera = 0x9e7aca3e,
+  lens_rays = 0x9e7a4a75,
+  layers = 0x9e7a1a7e,
+  blur = 0x9e7ab104,
+  freed = 0xdead9e7a
+};
+
+/// Base of a handle. Lenses and cameras share the contents of their glasses.
+template <class T, Kind k>
+struct Holder {
+  static constexpr Kind own_kind = k;
+  Kind kind = k;
+  std::shared_ptr<T> contents;
+};
+/// Gives the caller a new handle.
+template <class Handle, class T>
+void give(std::shared_ptr<T> contents, Handle** to) {
+  auto handle = std::make_unique<Handle>();
+  handle->contents = std::move(contents);
+  *to = handle.release();
+}
 
 template <class Handle>
 Handle& live(Handle* handle, const char* name) {
@@ -198,22 +221,11 @@ struct CameraContents {
 
 /// The camera as JSON, with the glasses that its lens uses, and the camera of such a text.
 std::string write_camera(const CameraContents& camera);
-std::unique_ptr<CameraContents> read_camera(std::string_view bytes);
+std::shared_ptr<CameraContents> read_camera(std::string_view bytes);
 
 }  // namespace petzval::c_detail
 
-struct petzval_glasses {
-  static constexpr auto own_kind = petzval::c_detail::Kind::glasses;
-  petzval::c_detail::Kind kind = own_kind;
-  std::shared_ptr<const petzval::GlassCatalogue> contents;
-};
-struct petzval_lens {
-  static constexpr auto own_kind = petzval::c_detail::Kind::lens;
-  petzval::c_detail::Kind kind = own_kind;
-  std::unique_ptr<petzval::c_detail::LensContents> contents;
-};
-struct petzval_camera {
-  static constexpr auto own_kind = petzval::c_detail::Kind::camera;
-  petzval::c_detail::Kind kind = own_kind;
-  std::unique_ptr<petzval::c_detail::CameraContents> contents;
+struct petzval_glasses : petzval::c_detail::Holder<const petzval::GlassCatalogue, petzval::c_detail::Kind::glasses> {};
+struct petzval_lens : petzval::c_detail::Holder<petzval::c_detail::LensContents, petzval::c_detail::Kind::lens> {};
+struct petzval_camera : petzval::c_detail::Holder<petzval::c_detail::CameraContents, petzval::c_detail::Kind::camera> {
 };

@@ -52,10 +52,7 @@ void open_lens(const petzval_lens_options* options, petzval_lens** lens, const R
       .strict = flag(own.strict, "strict"), .glasses = glasses.get(), .entry = own.entry ? own.entry : ""};
   CameraSetup setup{.lens = source_of(read(how), own)};
   const Lens compiled = compile(setup, glasses.get());
-  auto handle = std::make_unique<petzval_lens>();
-  handle->contents =
-      std::make_unique<LensContents>(LensContents{std::move(setup), std::move(glasses), compiled, compiled});
-  *lens = handle.release();
+  give(std::make_shared<LensContents>(LensContents{std::move(setup), std::move(glasses), compiled, compiled}), lens);
 }
 
 /// Changes the settings of a lens. If the change is refused, the lens keeps its settings.
@@ -152,9 +149,7 @@ petzval_status petzval_glasses_create(const char* file, const petzval_glasses* b
     given(glasses, "glasses");
     GlassCatalogue set = base ? *live(base, "base").contents : glass_tables();
     if (file) set = with_glasses(set, read_glasses(file).glasses);
-    auto handle = std::make_unique<petzval_glasses>();
-    handle->contents = std::make_shared<const GlassCatalogue>(std::move(set));
-    *glasses = handle.release();
+    give(std::make_shared<const GlassCatalogue>(std::move(set)), glasses);
   });
 }
 
@@ -199,9 +194,7 @@ petzval_status petzval_lens_parse(const char* bytes, std::size_t count, const ch
 petzval_status petzval_lens_copy(const petzval_lens* lens, petzval_lens** copy) {
   return guarded(results(copy), [&] {
     given(copy, "copy");
-    auto handle = std::make_unique<petzval_lens>();
-    handle->contents = std::make_unique<LensContents>(*live(lens, "lens").contents);
-    *copy = handle.release();
+    give(std::make_shared<LensContents>(*live(lens, "lens").contents), copy);
   });
 }
 

@@ -49,7 +49,7 @@ std::string write_camera(const CameraContents& own) {
   return format_json(json);
 }
 
-std::unique_ptr<CameraContents> read_camera(std::string_view bytes) {
+std::shared_ptr<CameraContents> read_camera(std::string_view bytes) {
   const JsonTree tree(bytes, "camera set-up", words_of);
   CameraSetup setup;
   HostOptions host;
@@ -59,7 +59,7 @@ std::unique_ptr<CameraContents> read_camera(std::string_view bytes) {
   std::shared_ptr<const GlassCatalogue> glasses;
   if (!setup.lens.glasses.empty()) glasses = std::make_shared<const GlassCatalogue>(std::move(setup.lens.glasses));
   setup.lens.glasses.clear();
-  return std::make_unique<CameraContents>(std::move(setup), host, std::move(glasses), lens);
+  return std::make_shared<CameraContents>(std::move(setup), host, std::move(glasses), lens);
 }
 
 }  // namespace petzval::c_detail

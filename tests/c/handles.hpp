@@ -18,9 +18,15 @@ struct Free {
   void operator()(petzval_lens* lens) const { petzval_lens_free(lens); }
   void operator()(petzval_camera* camera) const { petzval_camera_free(camera); }
   void operator()(petzval_glasses* glasses) const { petzval_glasses_free(glasses); }
+  void operator()(petzval_lens_rays* rays) const { petzval_lens_rays_free(rays); }
+  void operator()(petzval_layers* layers) const { petzval_layers_free(layers); }
+  void operator()(petzval_blur* blur) const { petzval_blur_free(blur); }
 };
 using LensHandle = std::unique_ptr<petzval_lens, Free>;
 using CameraHandle = std::unique_ptr<petzval_camera, Free>;
+using RaysHandle = std::unique_ptr<petzval_lens_rays, Free>;
+using LayersHandle = std::unique_ptr<petzval_layers, Free>;
+using BlurHandle = std::unique_ptr<petzval_blur, Free>;
 
 inline LensHandle read_lens(const std::string& file = double_gauss, const petzval_lens_options* options = nullptr) {
   petzval_lens* lens = nullptr;

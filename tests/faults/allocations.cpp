@@ -102,6 +102,8 @@ long next(long allocation, long count) {
 
 }  // namespace
 
+long allocations() noexcept { return made; }
+
 void expect_all_or_nothing(const Work& work) {
   work();  // fills caches
   const long before = made;

@@ -18,6 +18,9 @@ void expect_all_or_nothing(const std::function<std::string()>& work);
 /// Like expect_all_or_nothing(), but each repetition runs as the first work of a new process.
 void expect_all_or_nothing_at_first(const std::function<std::string()>& work);
 
+/// Number of allocations of operator new so far, in all threads.
+long allocations() noexcept;
+
 /// Numbers as text, to the bit.
 template <class T>
 std::string bits(std::span<const T> numbers) {

@@ -2,17 +2,20 @@
 // Failing allocations while layers are filled and blurred.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "../c/handles.hpp"
 #include "allocations.hpp"
 #include "blur/gather_method.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/petzval.h"
 
 namespace petzval {
 namespace blur_test {
@@ -113,6 +116,39 @@ TEST(MemoryEnds, InAnyThreadOfABlur) {
       return shown(picture);
     });
   }
+}
+
+TEST(Memory, IsKeptBetweenGathersOfTheCInterface) {
+  petzval_film film = petzval_film_init();
+  film.columns = 150, film.rows = 100;
+  const testing::CameraHandle camera = testing::create_camera(testing::read_lens(), &film);
+  petzval_lens_rays_options few = petzval_lens_rays_options_init();
+  few.count = 20;
+  petzval_lens_rays* rays = nullptr;
+  ASSERT_EQ(petzval_lens_rays_create(camera.get(), &few, &rays), PETZVAL_OK) << petzval_message();
+  const testing::RaysHandle own_rays(rays);
+  std::vector<float> rgba, depth_mm;
+  for (int i = 0; i < 150 * 100; ++i) {
+    rgba.insert(rgba.end(), {0.2f, 0.4f, 0.6f, 1}), depth_mm.push_back(i % 30 < 10 ? 800.0f : 3000.0f);
+  }
+  const float *const colours = rgba.data(), *const depths = depth_mm.data();
+  petzval_layers* layers = nullptr;
+  ASSERT_EQ(petzval_layers_create(150, 100, 1, &colours, &depths, &layers), PETZVAL_OK) << petzval_message();
+  const testing::LayersHandle own_layers(layers);
+  petzval_blur* blur = nullptr;
+  ASSERT_EQ(petzval_blur_create(&blur), PETZVAL_OK);
+  const testing::BlurHandle own_blur(blur);
+  petzval_gather_options options = petzval_gather_options_init();
+  options.progress = [](double, void*) { return std::int32_t{0}; };
+  const auto allocations_of_gather = [&] {
+    const long before = testing::allocations();
+    EXPECT_EQ(petzval_gather(layers, rays, &options, blur, rgba.data(), 16 * 150, depth_mm.data()), PETZVAL_OK);
+    return testing::allocations() - before;
+  };
+  EXPECT_GT(allocations_of_gather(), 0);
+  EXPECT_EQ(allocations_of_gather(), 0);
+  options.left = 31, options.columns = 77, options.rows = 50;
+  EXPECT_EQ(allocations_of_gather(), 0);
 }
 
 }  // namespace blur_test
