@@ -16,6 +16,7 @@ The library is looked for in PETZVAL_LIBRARY (path of libpetzval-c.so), on the s
 import array
 import ctypes
 import ctypes.util
+import itertools
 import json
 import os
 
@@ -49,7 +50,7 @@ _c = _library()
 _c.petzval_message.restype = ctypes.c_char_p
 _c.petzval_data_directory.restype = ctypes.c_char_p
 _c.petzval_glasses_count.restype = c_size
-for _name in ("glasses", "lens", "camera"):
+for _name in ("glasses", "lens", "camera", "lens_rays", "layers", "blur"):
     getattr(_c, f"petzval_{_name}_free").argtypes = [ctypes.c_void_p]
     getattr(_c, f"petzval_{_name}_free").restype = None
 
@@ -85,10 +86,13 @@ class _Struct(ctypes.Structure):
         return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n, *_ in self._fields_ if n not in ('size', 'unused'))})"
 
 
+_Progress = ctypes.CFUNCTYPE(c_int32, c_double, ctypes.c_void_p)
+
+
 def _struct(name, text):
     """Makes a struct from lines "type member member[3] ..." in the order of petzval.h."""
     types = {"double": c_double, "int32": c_int32, "int64": c_int64, "uint32": ctypes.c_uint32, "size": c_size,
-             "char": ctypes.c_char, "text": ctypes.c_char_p, "pointer": ctypes.c_void_p}
+             "char": ctypes.c_char, "text": ctypes.c_char_p, "pointer": ctypes.c_void_p, "callback": _Progress}
     fields = []
     for line in text.split(";"):
         kind, *members = line.split()
@@ -128,6 +132,12 @@ _Connection = type("_Connection", (_Struct,), {"_fields_": [
     ("direction", c_double * 3), ("distance", c_double), ("on_front", c_double * 3), ("pdf", c_double), ("importance", _Importance)]})
 _Samples = _struct("_Samples", "pointer raster_x raster_y pupil_u pupil_v wavelengths_nm times")
 _Rays = _struct("_Rays", "pointer x y z dx dy dz weights fates pdf_pupil pdf_direction")
+
+RaysInfo = _struct("RaysInfo", "size size; double focal_px axis_px[2] pinhole_z_mm reach_px offset_px bias; int32 columns rows overscan"
+                   " most_layers")
+_RaysOptions = _struct("_RaysOptions", "size size; int32 count set_count over_pixels threads; double nearest_mm; pointer rgb_nm")
+_GatherOptions = _struct("_GatherOptions", "size size; int32 left top columns rows threads unused; double highlights_above;"
+                         "callback progress; pointer user")
 
 ORIGINS = {"front_vertex": 0, "film": 1, "entrance_pupil": 2}
 FRAMES = {"lens": 0, "pbrt": 1, "mitsuba": 2, "arnold": 3}
@@ -426,3 +436,68 @@ class Camera(_Handle):
         y = [(info.rows / 2 - row[1]) * info.film_height_mm / info.rows for row in rows]
         weights = [row[2] for row in rows]
         return (numpy.array(x), numpy.array(y), numpy.array(weights)) if numpy is not None else (x, y, weights)
+
+
+class LensRays(_Handle):
+    """Rays of a camera through layers, count for each pixel; other options as in petzval_lens_rays_options."""
+    _free = _c.petzval_lens_rays_free
+
+    def __init__(self, camera, count=100, rgb_nm=None, **options):
+        super().__init__()
+        own = _RaysOptions(count=count, **options)
+        if rgb_nm is not None:
+            red, green, blue = rgb_nm
+            own.rgb_nm, _, _keep = _numbers((red, green, blue))
+        _call("lens_rays_create", camera._handle, ctypes.byref(own), ctypes.byref(self._handle))
+        self.columns, self.rows = camera.info.columns, camera.info.rows
+
+    def info(self, nearest_mm, farthest_mm):
+        info = RaysInfo()
+        _call("lens_rays_get_info", self._handle, c_double(nearest_mm), c_double(farthest_mm), ctypes.byref(info))
+        return info
+
+
+class Layers(_Handle):
+    """A scene from images (rgba [rows, columns, 4], depth_mm [rows, columns]), from near to far."""
+    _free = _c.petzval_layers_free
+
+    def __init__(self, columns, rows, images):
+        super().__init__()
+        planes = [[_numbers(values, "f") for values in image] for image in images]
+        if any([count for _, count, _ in image] != [4 * columns * rows, columns * rows] for image in planes):
+            raise Error(1, f"images must have 4 and 1 numbers for each of {columns} x {rows} pixels")
+        pointers = [(ctypes.c_void_p * len(planes))(*[image[i][0] for image in planes]) for i in (0, 1)]
+        _call("layers_create", c_int32(columns), c_int32(rows), c_size(len(planes)), *pointers, ctypes.byref(self._handle))
+
+    @classmethod
+    def deep(cls, columns, rows, pixels, bias, most_layers):
+        """From deep samples: for each pixel a list of (depth_mm, red, green, blue, alpha) in any order."""
+        self = cls.__new__(cls)
+        _Handle.__init__(self)
+        if len(pixels) != columns * rows:
+            raise Error(1, f"{len(pixels)} pixels; must be {columns} x {rows}")
+        offsets = (c_size * (len(pixels) + 1))(0, *itertools.accumulate(map(len, pixels)))
+        data, count, _keep = _numbers([number for pixel in pixels for sample in pixel for number in sample], "f")
+        _call("layers_create_deep", c_int32(columns), c_int32(rows), offsets, ctypes.c_void_p(data), c_size(count // 5), c_double(bias),
+              c_int32(most_layers), ctypes.byref(self._handle))
+        return self
+
+
+class Blur(_Handle):
+    """Renders layers through lens rays; its memory is reused."""
+    _free = _c.petzval_blur_free
+
+    def __init__(self):
+        super().__init__()
+        _call("blur_create", ctypes.byref(self._handle))
+
+    def gather(self, layers, rays, region=None, threads=0, highlights_above=1, progress=None):
+        """The picture [rows, columns, 4], or its region (left, top, columns, rows). progress(done) returns True to cancel."""
+        left, top, columns, rows = region or (0, 0, rays.columns, rays.rows)
+        own = _GatherOptions(threads=threads, left=left, top=top, columns=columns, rows=rows, highlights_above=highlights_above)
+        if progress:
+            own.progress = _Progress(lambda done, _: bool(progress(done)))
+        data, picture = _empty((max(rows, 0), max(columns, 0), 4), "f")
+        _call("gather", layers._handle, rays._handle, ctypes.byref(own), self._handle, ctypes.c_void_p(data), ctypes.c_ssize_t(16 * columns),
+              None)
+        return picture

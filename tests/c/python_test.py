@@ -53,7 +53,24 @@ expect(len(x) > 400 and max(abs(a) for a in x) < 0.3, "spot")
 psf, image = petzval.Camera(lens, film).point_image((0, 100, -2900), pixels=16, samples=1 << 12)
 total = float(image.sum()) if petzval.numpy is not None else sum(image)
 expect(abs(total - psf.throughput) < 1e-4, "the PSF contains the throughput")
-for wrong in (lambda: petzval.Lens("missing.json"), lambda: lens.copy().f_number(0.5), lambda: lens.copy().f_number(math.nan),
+rays = petzval.LensRays(camera, count=20, threads=2)
+info = rays.info(1000, math.inf)
+expect((rays.columns, rays.rows) == (600, 400) and 0 < info.offset_px < 100, "facts of lens rays")
+wide, high = 600, 400
+grey, alone = [0.25, 0.25, 0.25, 1] * (wide * high), [3000.0] * (wide * high)
+layers, blur = petzval.Layers(wide, high, [(grey, alone)]), petzval.Blur()
+seen = []
+whole = blur.gather(layers, rays, progress=lambda done: seen.append(done))
+numbers = whole.ravel().tolist() if petzval.numpy is not None else list(whole)
+expect(len(numbers) == 4 * wide * high and seen[0] == 0 and sorted(seen) == seen and seen[-1] == 1, "a picture with progress")
+centre = 4 * (wide * 200 + 300)
+expect(abs(numbers[centre] / numbers[centre + 2] - 1) < 1e-6 and numbers[centre + 3] == 1, "grey stays grey")
+part = blur.gather(petzval.Layers.deep(wide, high, [[(3000, 0.25, 0.25, 0.25, 1)]] * (wide * high), info.bias, 2), rays,
+                   region=(300, 200, 1, 1), highlights_above=math.inf, threads=2)
+expect(list(part.ravel() if petzval.numpy is not None else part) == numbers[centre:centre + 4], "a region of a deep image")
+for wrong in (lambda: blur.gather(layers, rays, progress=lambda done: True), lambda: blur.gather(layers, rays, region=(599, 0, 2, 1)),
+              lambda: petzval.Layers(wide, high, [(grey, alone[1:])]), lambda: petzval.Layers.deep(2, 1, [[(1, 2)]] * 2, 0, 1),
+              lambda: petzval.Lens("missing.json"), lambda: lens.copy().f_number(0.5), lambda: lens.copy().f_number(math.nan),
               lambda: petzval.Camera(lens, model="best"), lambda: petzval.Camera.read(b"{}"),
               lambda: petzval.Camera(lens, frame="cube"), lambda: camera.sample([1], [1, 2], [0], [0]),
               lambda: petzval.Film(width=24), lambda: petzval.Film(columns=2 ** 33), lambda: camera.project([1, 2, 3, 4]),
@@ -83,4 +100,22 @@ with tempfile.TemporaryDirectory() as folder:
         light, distortion = load("illumination"), load("distortion")
         expect(light[0] == 1 and 0 < light[3] < light[1] < 1, "illumination falls to the edge")
         expect(distortion[0] == 0 and abs(distortion).max() < 0.1, "distortion")
+try:
+    import OpenImageIO
+except ImportError:
+    OpenImageIO = None
+if petzval.numpy is not None and OpenImageIO is not None:
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [os.path.join(folder, name) for name in ("sharp.exr", "blurred.exr")]
+        spec = OpenImageIO.ImageSpec(48, 32, 5, OpenImageIO.FLOAT)
+        spec.channelnames = ("R", "G", "B", "A", "Z")
+        sharp = OpenImageIO.ImageBuf(spec)
+        pixels = petzval.numpy.full((32, 48, 5), 1, petzval.numpy.float32)
+        pixels[:, 24:] = (0, 0, 0, 1, 9)
+        sharp.set_pixels(OpenImageIO.ROI.All, pixels)
+        sharp.write(paths[0])
+        run = subprocess.run([sys.executable, os.path.join(examples, "blur_exr.py")] + paths + ["double_gauss_52mm_f1.8", "9000"],
+                             capture_output=True, text=True)
+        row = OpenImageIO.ImageBuf(paths[1]).get_pixels(OpenImageIO.FLOAT)[16, :, 0] if run.returncode == 0 else [0, 1]
+        expect(run.returncode == 0 and 0 == row[40] < row[24] < row[23] < row[22], f"blur_exr.py: {run.stderr}")
 sys.exit(1 if failures else 0)
