@@ -143,6 +143,25 @@ class Gathering {
     rays.scratch = memory.scratch.data();
     if (method_.by_blocks) set_tolerances(rays);
     steps_ += loops.follow(job, rays);
+    if (layers_.held_out()) follow_coverage(job, rays, channel, memory);
+  }
+
+  /// Follows the rays again, with coverage and the rounding errors of red and green as their colours.
+  void follow_coverage(TileJob job, const TileRays& rays, std::size_t channel, Memory& memory) const {
+    const std::ptrdiff_t plane = job.window.layer_stride / layers_.planes;
+    TileSums &sums = memory.sums[channel], &more = memory.covered;
+    job.window.colour[0] = job.window.alpha + plane, job.window.colour[1] = job.window.alpha + 2 * plane;
+    job.window.channel = 0, job.sums = &more;
+    gather_loops().follow(job, rays);
+    std::ranges::copy(more.colour[0], sums.alpha);
+    const auto add = [&](int colour, int error) {
+      for (int i = 0; i < TileSums::pixels; ++i) sums.colour[colour][i] += more.colour[error][i];
+    };
+    if (job.colours == 3) return add(0, 1), add(1, 2);
+    if (channel == 2) return;
+    job.window.channel = static_cast<int>(channel) + 1;
+    gather_loops().follow(job, rays);
+    add(0, 0);
   }
 
   /// In focus, lines may differ by less than the rounding to pixels; in a blur, also by a small part of its radius.
@@ -219,7 +238,7 @@ class Gathering {
       int at = (row - tile.top) * TileSums::columns + part.left - tile.left;
       const int end = at + part.columns;
       // In most rows all rays meet surfaces.
-      bool all_met = layers_.opaque;
+      bool all_met = layers_.opaque && !layers_.held_out();
       for (std::size_t c = 0; c < channels && all_met; ++c) {
         const TileSums& sums = memory.sums[c];
         for (int i = at; i < end; ++i) all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
@@ -251,14 +270,15 @@ class Gathering {
       // If no ray is known, the first layer is the best guess.
       if (known > 1e-6f * total) {
         rgba[c] *= total / known;
-        alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
+        alpha +=
+            layers_.opaque && !layers_.held_out() ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
       } else {
         const auto below = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row + overscan_) * layers_.columns +
                                                     column + overscan_);
         const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
         const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
         rgba[c] = any ? layers_.colour(0, below)[c] * total * per_ray : 0.0f;
-        alpha += any ? layers_.alpha(0, below) : 0.0f;
+        alpha += any ? layers_.coverage(0, below) : 0.0f;
       }
     }
     rgba[3] = alpha / 3;

@@ -21,7 +21,7 @@ namespace petzval {
 struct BlurredImage::Memory {
   struct OfThread {
     std::vector<float> corners[4], scratch, window;
-    blur_detail::TileSums sums[3];
+    blur_detail::TileSums sums[3], covered;
   };
 
   /// The memory of one thread while it works.

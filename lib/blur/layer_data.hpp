@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "n_buffer.hpp"
@@ -13,13 +14,15 @@
 
 namespace petzval {
 /// Planes of columns x rows numbers: inverse depth and two planes of PackedColour of each layer, and alpha unless all
-/// surfaces have alpha 1.
+/// surfaces have alpha 1. If there is a holdout, also two planes of a PackedColour of coverage, the part of alpha that
+/// belongs to the picture, and of the rounding errors of red and green up to 1: a picture and its holdout share
+/// surfaces, and their sum must not be rounded twice.
 struct LayerSet::Data {
   /// Numbers before, between and after planes: lanes may read this far beyond the ends of a row.
   static constexpr std::size_t slack = 128;
 
   int columns = 0, rows = 0, count = 0;
-  int planes = 3;    ///< 4: with alpha
+  int planes = 3;    ///< 4: with alpha; 6: with alpha and coverage
   int capacity = 0;  ///< number of layers that the memory has room for
   bool opaque = true;
   double n_buffer_seconds = 0;
@@ -38,10 +41,15 @@ struct LayerSet::Data {
     return blur_detail::PackedColour{plane(layer, 1)[pixel], plane(layer, 2)[pixel]}.unpacked();
   }
   float alpha(int layer, std::size_t pixel) const noexcept { return planes > 3 ? plane(layer, 3)[pixel] : 1.0f; }
+  bool held_out() const noexcept { return planes > 4; }
+  float coverage(int layer, std::size_t pixel) const noexcept {
+    return held_out() ? blur_detail::PackedColour{plane(layer, 4)[pixel], plane(layer, 5)[pixel]}.unpacked()[0]
+                      : alpha(layer, pixel);
+  }
 
   /// Grows the memory. The last layer has a plane for each colour and alpha until it is packed.
   void reserve(std::size_t stride) {
-    const std::size_t count_of_planes = static_cast<std::size_t>(planes * (capacity - 1) + 5);
+    const std::size_t count_of_planes = static_cast<std::size_t>(planes * (capacity - 1) + std::max(planes, 5));
     memory.resize(std::max(memory.size(), 2 * slack + count_of_planes * stride));
   }
   /// The depths of all layers.
@@ -82,6 +90,15 @@ class LayerAccess {
 
 namespace blur_detail {
 using LayerData = LayerAccess::Data;
-}
+
+constexpr int most_layers = 64;
+
+/// @throws Error unless there are 1 to most_layers layers
+void check_number(int layers);
+/// @throws Error unless there are 1 to 2^26 pixels
+void check_size(const std::string& where, int columns, int rows);
+/// Inverse depth, 1/mm; -1 for a value that is no depth.
+inline float inverse_of(float depth_mm) noexcept { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
+}  // namespace blur_detail
 
 }  // namespace petzval

@@ -18,22 +18,27 @@
 namespace petzval {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int most_layers = 64;
+using blur_detail::check_number, blur_detail::check_size, blur_detail::inverse_of, blur_detail::most_layers;
 
-void check_number(int layers) {
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+void blur_detail::check_number(int layers) {
   if (layers < 1 || layers > most_layers) {
     throw Error("layers: " + std::to_string(layers) + " layers; must be 1 to " + std::to_string(most_layers));
   }
 }
 
-void check_size(const std::string& where, int columns, int rows) {
+void blur_detail::check_size(const std::string& where, int columns, int rows) {
   constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
   if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > most_pixels) {
     throw Error(where + ": size = " + std::to_string(columns) + " x " + std::to_string(rows) + "; must be 1 to " +
                 std::to_string(most_pixels) + " pixels");
   }
 }
+
+namespace {
 
 /// Checks the size of a camera's layers, including overscan.
 void check_size(const LayerCamera& camera) {
@@ -50,9 +55,6 @@ std::string pixel_name(std::size_t pixel, int columns) {
   const auto width = static_cast<std::size_t>(columns);
   return "column " + std::to_string(pixel % width) + ", row " + std::to_string(pixel / width);
 }
-
-/// Inverse depth, 1/mm; -1 for a value that is no depth.
-float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
 
 }  // namespace
 
@@ -192,7 +194,7 @@ void axial_depths(const LayerCamera& camera, FragmentLists& lists) {
   for (std::size_t pixel = 0; pixel + 1 < lists.offsets.size(); ++pixel) {
     const float fraction = axial_fraction(camera, pixel);
     for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
-      lists.fragments[i].depth_mm *= fraction;
+      lists.fragments[i].depth_mm *= fraction, lists.fragments[i].back_mm *= fraction;
   }
 }
 
@@ -222,70 +224,6 @@ void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
     const float* const w = d.plane(layer, 0);
     for (std::size_t i = 0; i < d.pixels(); ++i) d.below[i] = w[i] >= 0 ? w[i] - bias : -1.0f;
   }
-  filling.finish();
-}
-
-void LayerSet::peel_fragments(const FragmentLists& lists, double bias, int layers) {
-  check_number(layers);
-  check_size("fragments", lists.columns, lists.rows);
-  const auto pixels = static_cast<std::size_t>(lists.columns) * static_cast<std::size_t>(lists.rows);
-  const auto wrong = [](const std::string& what) { return Error("fragments: " + what); };
-  if (lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
-      lists.offsets.back() != lists.fragments.size() || !std::is_sorted(lists.offsets.begin(), lists.offsets.end())) {
-    throw wrong("offsets must rise from 0 to the number of fragments, with one for each pixel and one more");
-  }
-  if (!(bias >= 0)) throw wrong("bias = " + to_text(bias) + "; must be at least 0");
-
-  // Filling layer by layer would sort each list again. One pass over the pixels writes to all layers.
-  Data& d = *data_;
-  Data::Filling filling(d, lists.columns, lists.rows, layers);
-  if (std::ranges::any_of(lists.fragments, [](const auto& f) { return f.depth_mm > 0 && f.alpha != 1; })) d.add_alpha();
-  for (int layer = 0; layer < layers; ++layer) {
-    for (int p = 0; p < d.planes; ++p) {
-      std::fill_n(d.plane(layer, p), pixels, p == 0 ? -1.0f : p == 3 ? 1.0f : 0.0f);
-    }
-  }
-  const auto step = static_cast<float>(bias);
-  std::vector<FragmentLists::Fragment> list;
-  std::vector<std::array<float, 5>> surfaces;  // inverse depth, red, green, blue, alpha
-  std::size_t deepest = 0;
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    list.clear();
-    for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
-      const FragmentLists::Fragment& f = lists.fragments[i];
-      if (!(f.depth_mm > 0)) continue;
-      if (!(f.alpha >= 0 && f.alpha <= 1)) {
-        throw wrong(pixel_name(pixel, lists.columns) + ": alpha = " + to_text(f.alpha) + "; must be 0 to 1");
-      }
-      list.push_back(f);
-    }
-    std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.depth_mm < b.depth_mm; });
-    surfaces.clear();
-    for (const FragmentLists::Fragment& f : list) {
-      const float w = inverse_of(f.depth_mm);
-      if (surfaces.empty() || w < surfaces.back()[0] - step) {
-        if (surfaces.size() == static_cast<std::size_t>(layers)) break;
-        surfaces.push_back({w, f.red, f.green, f.blue, f.alpha});
-      } else {
-        // Behind a transparent surface: add the transmitted part.
-        std::array<float, 5>& front = surfaces.back();
-        const float through = 1 - front[4];
-        const float values[] = {f.red, f.green, f.blue, f.alpha};
-        for (std::size_t p = 0; p < 4; ++p) front[p + 1] += through * values[p];
-      }
-    }
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      const auto& [w, red, green, blue, alpha] = surfaces[i];
-      const auto colour = blur_detail::PackedColour::of(red, green, blue);
-      const auto layer = static_cast<int>(i);
-      d.plane(layer, 0)[pixel] = w;
-      d.plane(layer, 1)[pixel] = colour.red_blue, d.plane(layer, 2)[pixel] = colour.green_blue;
-      if (d.planes > 3) d.plane(layer, 3)[pixel] = alpha;
-      d.opaque &= alpha == 1;
-    }
-    deepest = std::max(deepest, surfaces.size());
-  }
-  while (static_cast<std::size_t>(d.count) < deepest) d.count_layer();
   filling.finish();
 }
 

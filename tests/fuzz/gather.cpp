@@ -24,8 +24,8 @@ FragmentLists wild_lists(fuzz::Bytes& bytes, int columns, int rows, bool tame) {
   for (int i = 0; i < columns * rows; ++i) {
     for (int k = bytes.count(0, 3); k > 0; --k) {
       const bool sky = bytes.byte() < 16;
-      lists.fragments.push_back(
-          {sky ? infinity : number(500, 5000), number(0, 2), number(0, 2), number(0, 2), opaque ? 1 : number(0, 1)});
+      lists.fragments.push_back({sky ? infinity : number(500, 5000), number(0, 2), number(0, 2), number(0, 2),
+                                 opaque ? 1 : number(0, 1), bytes.one_in(4) ? number(400, 9000) : 0});
     }
     lists.offsets.push_back(lists.fragments.size());
   }
@@ -95,12 +95,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     LayerSet layers;
     const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
     const double bias = bytes.one_in(2) ? plan.bias : 0;
-    layers.peel_fragments(lists, bias, bytes.count(1, 4));
+    const bool held_out = bytes.one_in(4);
+    layers.peel_fragments(lists, bias, bytes.count(1, 4),
+                          held_out ? wild_lists(bytes, lists.columns, lists.rows, tame) : FragmentLists{});
     const blur_detail::GatherMethod way{bytes.one_in(2), !bytes.one_in(4)};
     const GatherOptions options{.highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
     const BlurredImage picture = blur_detail::gather(layers, rays, options, way);
     check(picture, tame);
-    if (!tame || options.highlights_above > 0 || layers.count() == 0) return;
+    if (!tame || held_out || options.highlights_above > 0 || layers.count() == 0) return;
     fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.limit_steps) < 0.1,
                   "a picture equals the reference");
   });

@@ -98,15 +98,23 @@ struct LayerPlanes {
 ///
 /// Pixel p has fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any order.
 struct FragmentLists {
-  /// One surface seen in a pixel.
+  /// One surface or volume seen in a pixel.
   struct Fragment {
     float depth_mm = 0;                             ///< along the axis; infinity for the sky
     float red = 0, green = 0, blue = 0, alpha = 1;  ///< premultiplied by alpha
+    /// Depth at which a uniform volume ends. Not beyond depth_mm, infinite, or an alpha of 1: a surface at depth_mm.
+    float back_mm = 0;
   };
   int columns = 0, rows = 0;
   std::vector<std::size_t> offsets;  ///< columns x rows + 1
   std::vector<Fragment> fragments;
 };
+
+/// The samples of a deep image behind a holdout of the same size, as a pinhole sees the image. Composited, they give
+/// the picture of `lists` without the light and the alpha that the holdout hides.
+///
+/// @throws Error as LayerSet::peel_fragments()
+PETZVAL_API FragmentLists hold_out(const FragmentLists& lists, const FragmentLists& holdout);
 
 /// Converts distances from the pinhole to depths along the axis, in place. Invalid depths and infinity are kept.
 ///
@@ -150,14 +158,24 @@ class PETZVAL_API LayerSet {
   /// Fills the set with the layers that peel() would find in fragment lists.
   ///
   /// Fragments within the bias of the layer in front are dropped. If that layer has alpha below 1, they are composited
-  /// with it instead.
+  /// with it instead. Volumes become slices that are at least as long as the bias, in inverse depth, and less than
+  /// twice as long: the blur of a point changes by less than two pixels from the front to the back of a slice. If a
+  /// pixel has more surfaces than layers, the distance over which translucent surfaces are composited is doubled until
+  /// they fit, so that no light is lost. Fragments at equal depths are mixed.
   ///
-  /// @param lists   fragments of each pixel, in any order
-  /// @param bias    as in PeelPlan (1/mm)
-  /// @param layers  largest number of layers, 1 to 64; fragments behind are dropped
-  /// @throws Error  if `layers` is out of range, the lists are inconsistent, the bias is negative, or an alpha is
-  ///                outside 0 to 1
-  void peel_fragments(const FragmentLists& lists, double bias, int layers);
+  /// @param lists    fragments of each pixel, in any order; without a depth above 0 they are ignored
+  /// @param bias     as in PeelPlan (1/mm)
+  /// @param layers   largest number of layers, 1 to 64; fragments behind an opaque last layer are dropped
+  /// @param holdout  an image of the same size that hides `lists` where it is in front, along each ray of the lens, but
+  ///                 adds no colour or alpha; 0 x 0 pixels: none. Its colours are not used. Doubles the time of
+  ///                 gather()
+  /// @throws Error   if `layers` is out of range, the lists are inconsistent or differ in size, the bias is negative,
+  ///                 an alpha is outside 0 to 1, or a colour is NaN
+  ///
+  /// Accuracy: without highlights, the picture of A held out by B and the picture of B held out by A add up to the
+  /// picture of all their fragments, within 1e-4 of colours up to 1 and of alpha (tests/blur/holdout_test.cpp). With
+  /// highlights, the same holds if the same surfaces are spread in all three pictures.
+  void peel_fragments(const FragmentLists& lists, double bias, int layers, const FragmentLists& holdout = {});
 
   /// Fills the set with images from near to far, 1 to 64.
   ///
@@ -171,7 +189,7 @@ class PETZVAL_API LayerSet {
   int count() const noexcept;
   /// Inverse depths of a layer, columns x rows values; negative if empty.
   std::span<const float> inverse_depth(int layer) const noexcept;
-  /// Red, green, blue and alpha of a pixel of a layer. Colours are stored with 13 significant bits.
+  /// Red, green, blue and alpha of a pixel of a layer. Colours are stored with 13 significant bits. A holdout is black.
   std::array<float, 4> rgba(int layer, std::size_t pixel) const noexcept;
   /// True if all surfaces have alpha 1.
   bool opaque() const noexcept;
@@ -179,7 +197,7 @@ class PETZVAL_API LayerSet {
   std::size_t memory_bytes() const noexcept;
   /// Time that the last fill took to build the depth bounds of rays.
   double n_buffer_seconds() const noexcept;
-  /// The layers as fragment lists, for files.
+  /// The layers as fragment lists, for files; a holdout is black.
   FragmentLists fragments() const;
 
  private:
