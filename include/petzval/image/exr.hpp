@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/core/config.hpp"
@@ -16,28 +17,35 @@ namespace petzval {
 
 /// The samples of a deep image, with counts of unusual samples.
 struct DeepPicture {
-  FragmentLists lists;
+  FragmentLists lists;  ///< the display window
   /// Number of samples left out because their depth is NaN, negative or 0 (in the pinhole).
   std::size_t without_depth = 0;
-  /// Number of volume samples (ZBack beyond Z), which are read as surfaces at Z with their alpha.
+  /// Number of volume samples (ZBack beyond Z).
   std::size_t volumes = 0;
+  /// Number of samples left out because they are outside the display window.
+  std::size_t outside = 0;
 };
 
-/// Reads the first part with deep scan lines of an EXR file.
+/// Reads a deep part of an EXR file, with scan lines or tiles (the largest level).
 ///
-/// The channels are Z, R, G and B, or Y instead of colours, of type half or float. A defaults to 1. Colours are
-/// premultiplied by alpha, as usual in EXR. Samples keep their order and, with a unit of 1, their exact values.
+/// The channels are Z, R, G and B, or Y instead of colours, of type half or float. A defaults to 1, ZBack to Z. Colours
+/// are premultiplied by alpha, as usual in EXR. Samples keep their order and, with a unit of 1, their exact values. The
+/// result has the pixels of the display window; pixels outside the data window are empty.
 ///
 /// @param file     the EXR file
 /// @param unit_mm  unit of Z in mm (metres: 1000)
-/// @throws Error   if the file is damaged, has no deep part, no channel Z or no colours, or has more than 2^27 pixels
-///                 or samples; also if the unit is not positive and finite
+/// @param part     name of the part; empty: the first deep part
+/// @throws Error   if the file is damaged, has no such deep part, no channel Z or no colours, or has more than 2^27
+///                 pixels or samples; also if the unit is not positive and finite
+///
+/// Memory: 24 bytes a sample and 16 bytes a pixel; twice as much if a file has more samples than bytes.
 ///
 /// Limitations: files do not state if Z is the depth along the axis or the distance from the pinhole. axial_depths()
 /// converts distances to depths.
-PETZVAL_API DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm = 1);
+PETZVAL_API DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm = 1,
+                                      const std::string& part = {});
 
-/// Writes deep scan lines of 32-bit floats with write_file(), lossless.
+/// Writes deep scan lines of 32-bit floats with write_file(), lossless. Volumes have a channel ZBack.
 ///
 /// @throws Error if the lists are empty or inconsistent, or the file cannot be written
 PETZVAL_API void write_deep_exr(const FragmentLists& lists, const std::filesystem::path& file);
