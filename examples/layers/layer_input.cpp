@@ -86,6 +86,15 @@ petzval::ExrPart read_values(const std::string& file) {
   return part;
 }
 
+FragmentLists read_deep(const std::string& file, const std::string& part) {
+  petzval::DeepPicture deep = petzval::read_deep_exr(file, 1, part);
+  for (const auto& [count, reason] :
+       {std::pair{deep.without_depth, "without a depth"}, std::pair{deep.outside, "outside the display window"}}) {
+    if (count > 0) std::cerr << "note: " << file << ": " << count << " samples " << reason << " are ignored\n";
+  }
+  return std::move(deep.lists);
+}
+
 /// Reads --depth: mm, along the axis or along rays.
 petzval::ExrPart read_depths(const InputFlags& flags) {
   const bool inverse = flags.depth_kind == "inverse", scaled = flags.near_mm > 0;
@@ -130,7 +139,19 @@ void add_input(examples::App& app, InputFlags& flags, double& fov_deg, std::uint
                      "picture: PNG or JPEG (sRGB), PFM or EXR (linear). An EXR may have depths (Z) and alpha (A); "
                      "several parts are layers from near to far")
           ->type_name("PICTURE");
-  app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
+  auto* deep = app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
+  auto* holdout = app.add_option("--holdout", flags.holdout,
+                                 "deep picture of the same size that hides --deep where it is in front, and stays "
+                                 "invisible: the two pictures with --deep and --holdout exchanged add up to the whole")
+                      ->type_name("DEEP.exr")
+                      ->needs(deep);
+  const auto add_part = [&](const char* flag, std::string& part, auto* of) {
+    app.add_option(flag, part, "name of the part of the deep file")
+        ->type_name("NAME")
+        ->default_str("the first deep part")
+        ->needs(of);
+  };
+  add_part("--part", flags.part, deep), add_part("--holdout-part", flags.holdout_part, holdout);
   auto* depth = app.add_option("--depth", flags.depth,
                                "depths of --image: EXR, PFM with one channel (Pf) and rows from the bottom, or grey "
                                "PNG with 8 or 16 bits, which needs --near and --far")
@@ -191,11 +212,13 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   }
   if (flags.width > 0 || flags.height > 0) throw Error("--size must not be used with files, which have their own size");
   if (!flags.deep.empty()) {
-    petzval::DeepPicture deep = petzval::read_deep_exr(flags.deep);
-    if (deep.without_depth > 0) std::cerr << "note: " << deep.without_depth << " samples without a depth are ignored\n";
-    if (deep.volumes > 0)
-      std::cerr << "note: " << deep.volumes << " volume samples are treated as surfaces at their front\n";
-    lists_ = std::move(deep.lists);
+    lists_ = read_deep(flags.deep, flags.part);
+    if (!flags.holdout.empty()) holdout_ = read_deep(flags.holdout, flags.holdout_part);
+    if (!flags.holdout.empty() && (holdout_.columns != lists_.columns || holdout_.rows != lists_.rows)) {
+      throw Error(flags.holdout + ": size = " + std::to_string(holdout_.columns) + " x " +
+                  std::to_string(holdout_.rows) + "; must be the size of " + flags.deep + ", " +
+                  std::to_string(lists_.columns) + " x " + std::to_string(lists_.rows));
+    }
   } else {
     read_picture();
   }
@@ -203,7 +226,9 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   if (flags.depth_unit.empty()) return;
   const auto unit =
       static_cast<float>(examples::parse_length("--depth-unit", "1" + flags.depth_unit, examples::positive_number));
-  for (FragmentLists::Fragment& f : lists_.fragments) f.depth_mm *= unit;
+  for (FragmentLists* const lists : {&lists_, &holdout_}) {
+    for (FragmentLists::Fragment& f : lists->fragments) f.depth_mm *= unit, f.back_mm *= unit;
+  }
 }
 
 void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool failed) const {
@@ -219,18 +244,20 @@ void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool fai
 
 void LayerInput::refine(int side) {
   if (side == 1) return;
-  FragmentLists fine{.columns = side * lists_.columns, .rows = side * lists_.rows, .offsets = {0}, .fragments = {}};
-  for (int row = 0; row < fine.rows; ++row) {
-    for (int column = 0; column < fine.columns; ++column) {
-      const auto pixel = static_cast<std::size_t>(row / side * lists_.columns + column / side);
-      const auto at = [&](std::size_t i) {
-        return lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[i]);
-      };
-      fine.fragments.insert(fine.fragments.end(), at(pixel), at(pixel + 1));
-      fine.offsets.push_back(fine.fragments.size());
+  for (FragmentLists* const lists : {&lists_, &holdout_}) {
+    FragmentLists fine{.columns = side * lists->columns, .rows = side * lists->rows, .offsets = {0}, .fragments = {}};
+    for (int row = 0; row < fine.rows; ++row) {
+      for (int column = 0; column < fine.columns; ++column) {
+        const auto pixel = static_cast<std::size_t>(row / side * lists->columns + column / side);
+        const auto at = [&](std::size_t i) {
+          return lists->fragments.begin() + static_cast<std::ptrdiff_t>(lists->offsets[i]);
+        };
+        fine.fragments.insert(fine.fragments.end(), at(pixel), at(pixel + 1));
+        fine.offsets.push_back(fine.fragments.size());
+      }
     }
+    *lists = std::move(fine);
   }
-  lists_ = std::move(fine);
 }
 
 void LayerInput::read_picture() {
@@ -264,7 +291,18 @@ void LayerInput::read_picture() {
   }
   for (std::size_t i = 0; i < planes[0].r->size(); ++i) {
     for (const auto& [r, g, b, z, a] : planes) {
-      if ((*z)[i] > 0) lists_.fragments.push_back({(*z)[i], (*r)[i], (*g)[i], (*b)[i], a ? (*a)[i] : 1.0f});
+      if (!((*z)[i] > 0)) continue;
+      const float values[] = {(*r)[i], (*g)[i], (*b)[i], a ? (*a)[i] : 1.0f};
+      FragmentLists::Fragment* const front =
+          lists_.fragments.size() > lists_.offsets.back() ? &lists_.fragments.back() : nullptr;
+      if (!front || front->depth_mm != (*z)[i]) {
+        lists_.fragments.push_back({(*z)[i], values[0], values[1], values[2], values[3]});
+        continue;
+      }
+      // Parts come from near to far, also at equal depths.
+      const float through = 1 - front->alpha;
+      front->red += through * values[0], front->green += through * values[1], front->blue += through * values[2];
+      front->alpha += through * values[3];
     }
     lists_.offsets.push_back(lists_.fragments.size());
   }
@@ -283,9 +321,12 @@ float LayerInput::depth_mm(int column, int row) const {
 
 double LayerInput::nearest_mm(const petzval::LayerCamera& camera, int threads) {
   if (scene_) return scene_->nearest_mm(camera, threads);
-  if (!std::exchange(depths_are_axial_, true)) petzval::axial_depths(camera, lists_);
+  const bool convert = !std::exchange(depths_are_axial_, true);
   float nearest = std::numeric_limits<float>::infinity();
-  for (const FragmentLists::Fragment& f : lists_.fragments) nearest = std::min(nearest, f.depth_mm);
+  for (FragmentLists* const lists : {&lists_, &holdout_}) {
+    if (convert && lists->columns > 0) petzval::axial_depths(camera, *lists);
+    for (const FragmentLists::Fragment& f : lists->fragments) nearest = std::min(nearest, f.depth_mm);
+  }
   return static_cast<double>(nearest);
 }
 
@@ -299,7 +340,7 @@ void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, pe
                return peel(layer, below, out);
              });
   } else {
-    set.peel_fragments(lists_, plan.bias, layers);
+    set.peel_fragments(lists_, plan.bias, layers, holdout_);
   }
 }
 

@@ -15,10 +15,11 @@ namespace lens_blur {
 /// Command line of the source of layers.
 struct InputFlags {
   std::string scene, image, deep, depth, depth_kind = "axial";
-  std::string depth_unit;               ///< empty: mm, not given
-  double near_mm = 0, far_mm = 0;       ///< depths of the ends of the values of --depth; 0: values are lengths
-  std::string white;                    ///< "near" or "far"; empty: far, or near for inverse depths
-  std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the size of the file
+  std::string part, holdout, holdout_part;  ///< parts of deep files; empty: the first
+  std::string depth_unit;                   ///< empty: mm, not given
+  double near_mm = 0, far_mm = 0;           ///< depths of the ends of the values of --depth; 0: values are lengths
+  std::string white;                        ///< "near" or "far"; empty: far, or near for inverse depths
+  std::uint32_t width = 0, height = 0;      ///< 0: 800 x 600, or the size of the file
 };
 
 /// Adds the options of the source, --fov and --layers.
@@ -36,6 +37,10 @@ class LayerInput {
   const renderer::Pose& pose() const noexcept { return pose_; }
   /// The scene; null if the layers come from files.
   LitScene* scene() const noexcept { return scene_.get(); }
+  /// True if the layers come from a deep picture, which may be transparent.
+  bool deep() const noexcept { return !flags_.deep.empty(); }
+  /// The samples of a deep picture that its holdout leaves, with the depths of nearest_mm().
+  petzval::FragmentLists held_out() const { return petzval::hold_out(lists_, holdout_); }
 
   /// Axial depth of the nearest surface in a pixel of a file (mm); infinity: the sky; 0: no surface. nearest_mm() must
   /// have been called.
@@ -59,7 +64,7 @@ class LayerInput {
   int columns_ = 800, rows_ = 600;
   renderer::Pose pose_;
   std::unique_ptr<LitScene> scene_;
-  petzval::FragmentLists lists_;  ///< contents of files
+  petzval::FragmentLists lists_, holdout_;  ///< contents of files
   bool depths_are_axial_ = true;
 };
 

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"
@@ -47,7 +49,7 @@ struct Options {
   bool compare = false;
   std::uint32_t compare_rays = 0;  ///< 0: no comparison with more rays
   std::vector<std::string> formats;
-  std::string out_folder;
+  std::string out_folder, deep_out;
 };
 
 /// Largest number of frames in frames.svg.
@@ -69,9 +71,11 @@ RgbImage middle_of(const RgbImage& picture) {
   return middle;
 }
 
-RgbImage missed_of(const petzval::BlurredImage& picture) {
+/// A grey image of a number for each pixel.
+template <class Of>
+RgbImage grey(const petzval::BlurredImage& picture, const Of& of) {
   RgbImage image(picture.columns, picture.rows);
-  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::fill_n(&image.pixels[3 * i], 3, picture.missed[i]);
+  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::fill_n(&image.pixels[3 * i], 3, of(i));
   return image;
 }
 
@@ -133,6 +137,7 @@ class Job {
     }
     if (options_.frames > 1) write_frames(folder);
     if (options_.compare_rays > 0) compare_rays(folder);
+    if (!options_.deep_out.empty()) petzval::write_deep_exr(input_.held_out(), options_.deep_out);
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
     progress.reset();
     if (rays_error_px_ > 1) {
@@ -178,10 +183,17 @@ class Job {
     const double gather_ms = examples::ms_since(start);
     nearest_mm_ = std::numeric_limits<double>::infinity();  // later errors have other reasons
     const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
-    write(picture, folder / ("blur" + number));
+    std::map<std::string, std::vector<float>> channels;
+    if (input_.deep()) {
+      const RgbImage alpha =
+          lens_blur::averaged(grey(blurred_, [&](std::size_t i) { return blurred_.rgba[4 * i + 3]; }), side_);
+      for (std::size_t i = 0; i < alpha.pixels.size(); i += 3) channels["A"].push_back(alpha.pixels[i]);
+    }
+    write(picture, folder / ("blur" + number), channels);
     if (frame == 0) {
       write(lens_blur::averaged(lens_blur::sharp_of(layers_, rays.camera()), side_), folder / "sharp");
-      write(lens_blur::averaged(missed_of(blurred_), side_), folder / "missed");
+      write(lens_blur::averaged(grey(blurred_, [&](std::size_t i) { return blurred_.missed[i]; }), side_),
+            folder / "missed");
     }
 
     Json json{{"lens", lens_.name()},
@@ -342,8 +354,10 @@ class Job {
     if (options_.frames == 1) write(reference, std::filesystem::path(options_.out_folder) / "reference");
   }
 
-  void write(const RgbImage& image, const std::filesystem::path& stem) const {
-    for (const auto& file : examples::write_picture(image, petzval::to_srgb8(image), options_.formats, stem)) {
+  void write(const RgbImage& image, const std::filesystem::path& stem,
+             const std::map<std::string, std::vector<float>>& channels = {}) const {
+    for (const auto& file :
+         examples::write_picture(image, petzval::to_srgb8(image), options_.formats, stem, {}, {}, channels)) {
       std::cout << file.string() << '\n';
     }
   }
@@ -389,6 +403,11 @@ int commands::blur(int argc, char** argv) {
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
+  examples::add_out_file(
+      app, options.deep_out,
+      "deep picture of the samples of --deep that --holdout leaves, not blurred, with depths along the axis in mm",
+      "DEEP.exr", "--deep-out")
+      ->needs(app.get_option("--deep"));
   examples::add_length(app, "--travel", options.travel_mm, examples::finite_number,
                        "distance that the camera moves to the right over all frames (mm)");
   examples::add_threads(app);

@@ -34,8 +34,9 @@ constexpr std::array all_groups{
           "--precision --surfaces-from "},
     Group{"Quality", true,
           " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "},
-    Group{"Depths", true, " --depth-kind --depth-unit --near --far --white "},
-    Group{"Files", true, " --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
+    Group{"Depths", true, " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --white "},
+    Group{"Files", true,
+          " --deep-out --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "
           "--weight-distribution --weight-strength --weight-map "},

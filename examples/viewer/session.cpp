@@ -49,9 +49,11 @@ std::string as_file(const std::string& file) { return file.starts_with('-') ? ".
 using Input = lens_blur::InputFlags;
 /// Texts of a log, with their keys.
 constexpr std::pair<const char*, std::string Input::*> texts[] = {
-    {"scene", &Input::scene}, {"image", &Input::image},           {"depth", &Input::depth},
-    {"deep", &Input::deep},   {"depth_kind", &Input::depth_kind}, {"depth_unit", &Input::depth_unit},
-    {"white", &Input::white}};
+    {"scene", &Input::scene},           {"image", &Input::image},
+    {"depth", &Input::depth},           {"deep", &Input::deep},
+    {"depth_kind", &Input::depth_kind}, {"depth_unit", &Input::depth_unit},
+    {"white", &Input::white},           {"part", &Input::part},
+    {"holdout", &Input::holdout},       {"holdout_part", &Input::holdout_part}};
 
 /// Memory of layers, with the depths of the last layer, and of a blurred picture, MB.
 double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& picture) {
@@ -375,8 +377,8 @@ examples::Json events_of(const Json& log, const std::string& where) {
 
 SessionOptions options_of(const Json& log, const std::string& where) {
   const examples::JsonEntry entry{where, log};
-  entry.keys({"scene", "image", "depth", "deep", "depth_kind", "depth_unit", "near_mm", "far_mm", "white", "lens",
-              "setup", "size", "fov_deg", "events"});
+  entry.keys({"scene", "image", "depth", "deep", "part", "holdout", "holdout_part", "depth_kind", "depth_unit",
+              "near_mm", "far_mm", "white", "lens", "setup", "size", "fov_deg", "events"});
   SessionOptions options;
   for (const auto& [key, member] : texts) {
     if (!log.contains(key)) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -123,6 +124,41 @@ TEST_F(LensBlurProgram, LayersAndDeepImagesGiveEqualPictures) {
   EXPECT_EQ(from_deep["layers"], 2);
   EXPECT_EQ(picture("layers/blur.pfm").pixels, picture("deep/blur.pfm").pixels);
   EXPECT_EQ(from_deep["miss_rate"], 0);
+}
+
+TEST_F(LensBlurProgram, PictureAndItsHoldoutAddUpToTheWhole) {
+  // Fog in front of half a wall, and a pane within the fog.
+  petzval::FragmentLists wall{24, 16, {0}, {}}, pane = wall, whole = wall;
+  for (std::size_t i = 0; i < 384; ++i) {
+    const auto put = [&](petzval::FragmentLists& lists, const petzval::FragmentLists::Fragment& f) {
+      lists.fragments.push_back(f), whole.fragments.push_back(f);
+    };
+    put(wall, {1000, 0.2f, 0.3f, 0.4f, 0.5f, 3000});
+    if (i % 24 > 4) put(wall, {4000, static_cast<float>(i % 5) / 4, 0.5f, 0.25f, 1});
+    if (i % 24 < 12) put(pane, {1500, 0.1f, 0.2f, 0, 0.75f});
+    for (petzval::FragmentLists* lists : {&wall, &pane, &whole}) lists->offsets.push_back(lists->fragments.size());
+  }
+  write_deep_exr(wall, path("wall")), write_deep_exr(pane, path("pane")), write_deep_exr(whole, path("whole"));
+  const Arguments lens = joined({thin, {"--focus", "2000", "--rays", "32", "--highlights-above", "0"}});
+  const auto blurred = [&](const Arguments& arguments) {
+    EXPECT_EQ(run("blur", joined({lens, {"--format", "exr", "--out", path("out"), "--deep"}, arguments})).status, 0);
+    return petzval::read_exr_parts(path("out/blur.exr"))[0].channels;
+  };
+  const auto held_wall = blurred({path("wall"), "--holdout", path("pane"), "--deep-out", path("held.exr")}),
+             held_pane = blurred({path("pane"), "--holdout", path("wall")}), all = blurred({path("whole")});
+  for (const char* channel : {"R", "G", "B", "A"}) {
+    for (std::size_t i = 0; i < 384; ++i)
+      EXPECT_NEAR(held_wall.at(channel)[i] + held_pane.at(channel)[i], all.at(channel)[i], 1e-4);
+  }
+  EXPECT_EQ(petzval::read_deep_exr(path("held.exr")).lists.offsets, petzval::hold_out(wall, pane).offsets);
+
+  // Other sizes and parts are refused, and nothing is written.
+  petzval::write_deep_exr({1, 1, {0, 1}, {{1000}}}, path("other"));
+  for (const Arguments& wrong : {Arguments{"--holdout", path("other")}, {"--part", "depth"}}) {
+    const auto outcome = run("blur", joined({lens, {"--deep", path("wall"), "--out", path("no")}, wrong}));
+    EXPECT_NE(outcome.err.find(wrong[1]), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(path("no/blur.exr")));
+  }
 }
 
 TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
