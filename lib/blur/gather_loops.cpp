@@ -604,24 +604,22 @@ std::uint64_t follow_registers(const TileJob& job, const TileRays& rays, const L
 }
 
 /// Measures by how much the lines of a block differ from the line at its middle, beyond the tolerance.
-/// @return the number of rays whose lines differ by more than the tolerance
-PETZVAL_INLINE int measure_excess(const TileJob& job, const TileRays& rays, const Lines& lines, int columns,
-                                  int rows) noexcept {
+/// @return true if the lines of any ray do
+PETZVAL_INLINE bool measure_excess(const TileJob& job, const TileRays& rays, const Lines& lines, int columns,
+                                   int rows) noexcept {
   const auto half_of = [](int length, int all) {
     return Numbers(0.5f * static_cast<float>(length < all ? length - 1 : length) / static_cast<float>(all));
   };
-  const Numbers half_across = half_of(columns, job.columns), half_down = half_of(rows, job.rows), none(0.0f), one(1.0f);
-  Numbers differing = none;
+  const Numbers half_across = half_of(columns, job.columns), half_down = half_of(rows, job.rows), none(0.0f);
+  bool differ = false;
   for (std::size_t i = 0; i < rays.row_stride; i += static_cast<std::size_t>(width)) {
     Numbers beyond = none;
     for (const auto& [depth, px] : rays.tolerances)
       beyond = larger(beyond, lines.change(i, Numbers(depth), half_across, half_down) - Numbers(px));
     store(rays.excess() + i, beyond);
-    differing = differing + only(all_of(beyond > none, first_lanes(rays.row_stride - i)), one);
+    differ |= any(all_of(beyond > none, first_lanes(rays.row_stride - i)));
   }
-  float sum = 0;
-  for (int l = 0; l < width; ++l) sum += differing.v[l];
-  return static_cast<int>(sum);
+  return differ;
 }
 
 /// Follows the rays of a tile block by block. Blocks are as large as the tolerance permits; the tile is one block if
@@ -631,7 +629,7 @@ std::uint64_t follow_sets(const TileJob& job, const TileRays& rays) noexcept {
   constexpr int at_once = width == 16 ? 4 : 2;
   const Lines lines(rays);
   int columns = job.columns, rows = job.rows;
-  while (measure_excess(job, rays, lines, columns, rows) > 0) {
+  while (measure_excess(job, rays, lines, columns, rows)) {
     if (columns > width && (columns > rows || rows <= 4 * side))
       columns = (columns / 2 + width - 1) / width * width;
     else if (rows > 4 * side)

@@ -149,11 +149,11 @@ void each_offset(const RayTable& t, double least, double most, const F& f) {
   for (std::size_t channel = 0; channel < t.channels; ++channel) {
     for (std::size_t row = 0; row < t.node_rows; ++row) {
       for (std::size_t column = 0; column < t.node_columns; ++column) {
+        const double x = t.column_of(column), y = t.row_of(row);
         const float* const node = t.node(channel, row, column);
         for (std::size_t i = 0; i < n; ++i) {
           for (const double w : {least, most}) {
-            f(t.column_of(column), t.row_of(row), node[at_x * n + i] + w * node[slope_x * n + i],
-              node[at_y * n + i] + w * node[slope_y * n + i]);
+            f(x, y, node[at_x * n + i] + w * node[slope_x * n + i], node[at_y * n + i] + w * node[slope_y * n + i]);
           }
         }
       }
