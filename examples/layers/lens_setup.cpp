@@ -183,10 +183,12 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     flags_.pattern.jitter = flags.pattern.jitter || !view_.thin();
   }
   if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.setup.film);
-  if (keyed_ && !flags.setup.points_file.empty()) points_ = examples::read_focus_points(flags.setup.points_file);
-  view_.surface = surface_at(0);
+  if (keyed_ && !flags.setup.points_file.empty()) {
+    points_ = examples::read_focus_points(flags.setup.points_file, world_to_lens(view_.camera()));
+  }
+  view_.surface = surface_at(0, 0);
   if (model() == petzval::ModelKind::thick && !view_.first_order_only) {
-    examples::note(std::string(view_.surface ? "--points" : "an expressive lens") + ": " + name() +
+    examples::note(std::string(view_.surface ? "a focal surface" : "an expressive lens") + ": " + name() +
                    " is replaced by its thick lens, without aberrations and vignetting");
   }
 }
@@ -197,7 +199,7 @@ void BlurLens::focus_at(double focus_mm, bool keep_film) {
   const petzval::Film film = view_.setup.film;
   view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, view_.vertical_angle_rad,
                   keep_film ? film.height_mm : 0);
-  view_.surface = surface_at(0);
+  view_.surface = surface_at(0, 0);
   layers_ = view_.layers(flags_.pattern.supersample);
 }
 
@@ -209,28 +211,37 @@ petzval::CameraSetup BlurLens::setup() const {
   return result;
 }
 
-std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
+examples::WorldToLens BlurLens::world_to_lens(const petzval::Camera& camera) const {
+  return [in_world = renderer::LensCamera(camera, pose_)](const petzval::Vec3<double>& p) {
+    return in_world.to_lens(glm::vec3(p));
+  };
+}
+
+std::optional<petzval::FocalSurface> BlurLens::surface_at(double time, double travelled_mm) {
   const std::string& file = flags_.setup.points_file;
   petzval::CameraSetup& setup = view_.setup;
   if (file.empty() && setup.focal_points.empty()) return {};
   const petzval::Camera plain = view_.camera();
-  if (!keyed_ && !file.empty()) {
-    const renderer::LensCamera in_world(plain, pose_);
-    return examples::read_focal_surface(file, setup, plain,
-                                        [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); });
-  }
+  if (!keyed_ && !file.empty()) return examples::read_focal_surface(file, setup, plain, world_to_lens(plain));
   const petzval::IdealLens ideal = petzval::thick_lens(plain.lens());
   if (!points_.empty()) {
+    std::vector<petzval::FocusPoint> points = points_;
+    for (petzval::FocusPoint& point : points) {
+      for (petzval::FocusKey& key : point.keys) {
+        auto& [position, at_infinity] = std::get<petzval::ScenePoint>(key.anchor);
+        if (!at_infinity) position.x -= travelled_mm;
+      }
+    }
     const petzval::FocusTime moment{.time = time, .film = setup.film};
-    std::vector<petzval::FocalPoint> seen = petzval::focal_points(ideal, setup.film, points_, moment);
+    std::vector<petzval::FocalPoint> seen = petzval::focal_points(ideal, setup.film, points, moment);
     if (seen.empty()) return view_.surface;  // keep the previous surface
     setup.focal_points = std::move(seen);
   }
-  return petzval::FocalSurface(ideal, plain.film(), setup.focal_points, setup.focal_surface);
+  return examples::focal_surface(file.empty() ? flags_.setup.file : file, ideal, plain.film(), setup);
 }
 
-petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
-  if (keyed_) view_.surface = surface_at(time);
+petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time, double travelled_mm) {
+  if (keyed_) view_.surface = surface_at(time, travelled_mm);
   return view_.rays(layers_, flags_.pattern, nearest_mm, threads);
 }
 

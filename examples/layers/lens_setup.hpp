@@ -59,11 +59,13 @@ class BlurLens {
   /// Changes the number of rays per pixel.
   void set_rays(std::uint32_t rays) noexcept { flags_.pattern.rays = rays; }
   std::uint32_t ray_count() const noexcept { return flags_.pattern.rays; }
-  /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface.
-  petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
+  /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface. travelled_mm: distance that the
+  /// camera has moved to the right; focus points over time stay in the world.
+  petzval::LensRays rays(double nearest_mm, int threads, double time = 0, double travelled_mm = 0);
 
  private:
-  std::optional<petzval::FocalSurface> surface_at(double time);
+  examples::WorldToLens world_to_lens(const petzval::Camera& camera) const;
+  std::optional<petzval::FocalSurface> surface_at(double time, double travelled_mm);
 
   LensFlags flags_;
   renderer::Pose pose_;

@@ -44,7 +44,7 @@ struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
   std::uint32_t layers = 4, supersample = 0;
-  std::uint32_t frames = 1;                     ///< FocusPull::count()
+  std::uint32_t frames = 1;                     ///< CameraFlags::frame_count()
   double travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: lens_blur::threshold_of()
   bool compare = false;
   std::uint32_t compare_rays = 0;  ///< 0: no comparison with more rays
@@ -157,17 +157,15 @@ class Job {
       // The camera of a file keeps its angle.
       lens_.focus_at(focus_mm, input_.scene() != nullptr);
     }
-    if (input_.scene()) {
-      const double part = options_.frames > 1 ? frame / (options_.frames - 1.0) : 0;
-      input_.scene()->move_to({static_cast<float>(part * options_.travel_mm), 0, 0});
-    }
+    const double travelled_mm = options_.frames > 1 ? options_.travel_mm * frame / (options_.frames - 1.0) : 0;
+    if (input_.scene()) input_.scene()->move_to({static_cast<float>(travelled_mm), 0, 0});
     const double nearest = nearest_mm_ = input_.nearest_mm(lens_.layers(), threads_);
     if (!std::isfinite(nearest))
       throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
     input_.refuse_near(nearest, lens_.focal_length_mm());
     auto start = std::chrono::steady_clock::now();
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
-    const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_, time);
+    const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_, time, travelled_mm);
     const double rays_ms = examples::ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
     const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
@@ -419,7 +417,7 @@ int commands::blur(int argc, char** argv) {
       options.input.width = static_cast<std::uint32_t>(film.columns);
       options.input.height = static_cast<std::uint32_t>(film.rows);
     }
-    options.frames = options.lens.setup.pull.count(options.lens.setup.focus.origin, options.lens.setup.points_file);
+    options.frames = options.lens.setup.frame_count();
     Job(options).run();
   });
 }

@@ -62,7 +62,7 @@ void print_files() {
   fade                   0 (no influence) to 1 (surface, render, blur)
 
 Keys (pull --keys FILE, blur --frames N --points FILE): points with from_s, until_s and "keys", a list of objects
-  with time_s and the names above. A point without keys does not move.
+  with time_s, position_mm, at_infinity, weight, blur_mm and extent_stops. A point without keys does not move.
 
 Events (view --replay FILE): an object with scene (or image, depth, deep), lens, size, fov_deg and events, a list
   of objects with type: add_point, move_point, set_point, remove_point, serve, focus, f_number, iris, bokeh,

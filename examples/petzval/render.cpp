@@ -387,7 +387,7 @@ class Job {
 /// Renders one picture, or the frames of a focus pull.
 void render_frames(Options options) {
   const examples::FocusPull& pull = options.setup.pull;
-  const std::uint32_t count = pull.count(options.setup.focus.origin, options.setup.points_file);
+  const std::uint32_t count = options.setup.frame_count();
   if (count > 1 && !pull.moves()) {
     throw petzval::Error("--frames = " + std::to_string(count) + ": must be used with --focus A:B or KEYS.json");
   }

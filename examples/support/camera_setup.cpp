@@ -2,6 +2,7 @@
 #include "camera_setup.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -39,14 +40,21 @@ std::string report_of(const std::string& file, const std::vector<std::string>& l
   const std::string text = read_text(file, largest_json);
   const Json all = Json::parse(text, nullptr, false);
   if (!all.is_object() || !all.contains("lenses")) return text;
-  std::string names;
   const Json document = read_json(file);
+  const JsonEntry reports{"--setup = " + file, document};
+  if (!document["lenses"].is_array()) reports.refuse("lenses", "a list of reports");
+  const Json::json_pointer name_of_lens("/setup/lens/file");
+  std::string names;
   for (const Json& report : document["lenses"]) {
-    const std::string name = report.at("setup").at("lens").at("file");
+    if (!report.contains(name_of_lens) || !report[name_of_lens].is_string()) {
+      refuse(reports.where + ": lenses", report, "reports with setup.lens.file");
+    }
+    const std::string name = report[name_of_lens];
     if (lens == std::vector{name}) return report.dump();
     names += (names.empty() ? "" : ", ") + name;
   }
-  throw petzval::Error("--setup = " + file + ": has several lenses; LENS must be one of " + names);
+  if (names.empty()) reports.refuse("lenses", "a list of one or more reports");
+  throw petzval::Error(reports.where + ": has several lenses; LENS must be one of " + names);
 }
 
 }  // namespace
@@ -73,6 +81,33 @@ petzval::Film CameraFlags::sized_film(std::uint32_t columns, std::uint32_t rows,
   return result;
 }
 
+std::uint32_t CameraFlags::frame_count() const {
+  const auto& [keys, text, origin, frames, frames_per_s] = pull;
+  if (frames_per_s > 0 && points_file.empty() && !text.ends_with(".json")) {
+    throw petzval::Error("--fps = " + number(frames_per_s) + ": must be used with --focus KEYS.json or --points");
+  }
+  if (!pull.moves()) return std::max(frames, 1u);
+  const std::string given = "--focus = " + text;
+  if (!points_file.empty() || !focal_points.empty()) {
+    throw petzval::Error(given + " with " + (points_file.empty() ? "the focal points of " + file : "--points") +
+                         "; must be one distance");
+  }
+  if (!origin.empty() && origin != name(focus.origin)) {
+    throw petzval::Error(text + ": distance_from = " + origin + "; must be the value of --from, " +
+                         std::string(name(focus.origin)));
+  }
+  if (!text.ends_with(".json")) {
+    if (frames < 2) throw petzval::Error(given + ": must be used with --frames of 2 or more");
+    return frames;
+  }
+  const double all = std::floor((keys.back().time_s - keys.front().time_s) / pull.time_s(1) + 1e-6) + 1;
+  if (frames == 0 && !(all <= FocusPull::frame_counts.most)) {
+    throw petzval::Error(text + ": frames = " + number(all) + "; must be at most " +
+                         number(FocusPull::frame_counts.most) + " or limited by --frames");
+  }
+  return frames > 0 ? frames : static_cast<std::uint32_t>(all);
+}
+
 void add_setup(App& app, CameraFlags& flags) {
   const auto read = [&app, &flags](const std::string& file) {
     const auto fail = [&](const std::string& why) { throw petzval::Error("--setup = " + file + ": " + why); };
@@ -88,13 +123,15 @@ void add_setup(App& app, CameraFlags& flags) {
     for (const char* replaced : {"LENS", "--focus"}) {
       if (Option* const option = app.get_option(replaced)) option->required(false);
     }
-    const bool other_lens = app.given("LENS") || app.given("--thin-lens") || app.given("--singlet");
     const std::string& lens = flags.lens.file;
+    const bool other_lens = (app.given("LENS") && app.values("LENS") != std::vector{lens}) ||
+                            app.given("--thin-lens") || app.given("--singlet");
     if (!other_lens && !lens.empty() && !petzval::find_lens(lens)) {
       fail("lens: file = \"" + lens + "\"; must be an existing file or the name of a shipped lens");
     }
     if (other_lens) flags.lens = {.wavelengths_nm = flags.lens.wavelengths_nm};
-    if (other_lens || app.given("--focus")) {
+    const auto given = [&app](const char* flag) { return app.given(flag); };
+    if (other_lens || std::ranges::any_of(std::array{"--focus", "--from", "--criterion"}, given)) {
       flags.film.z_mm.reset(), flags.focal_surface.default_inverse_distance.reset();
     }
     if (app.values("--iris-area") == std::vector<std::string>{"equal"} && !app.given("--f-number")) {
@@ -293,8 +330,8 @@ double reachable(const petzval::Lens& lens, double f_number) {
   const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
   if (!(f_number < fastest && fastest <= name_tolerance * f_number)) return f_number;
   if (fastest > rounding_tolerance * f_number) {
-    note(lens.name() + ": --f-number = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
-         ", which is used");
+    note(lens.name() + ": the lens opens to f/" + number(fastest, 4) + ", which is used instead of f/" +
+         number(f_number));
   }
   return fastest;
 }

@@ -35,6 +35,9 @@ struct CameraFlags : petzval::CameraSetup {
   /// @param usual_columns  columns if neither number is given
   /// @throws petzval::Error if --film is so narrow that the picture would need more than 16384 pixels
   petzval::Film sized_film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
+  /// Number of frames: --frames, the frames of a file of distances, or 1. A focus that moves has no focal surface.
+  /// @throws petzval::Error that names the flag
+  std::uint32_t frame_count() const;
   /// The set-up for a report, with the f-number of stopped_down().
   petzval::CameraSetup used_with(const petzval::Lens& compiled) const;
 };

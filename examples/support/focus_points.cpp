@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include "json_input.hpp"
 #include "petzval/core/error.hpp"
@@ -18,6 +21,19 @@ namespace {
 
 using petzval::Error;
 using petzval::Vec3;
+
+// The keys of each kind of point. A point over time has the keys of a target, or `keys` and the keys of all times.
+const std::initializer_list<std::string_view> target_keys{"id",      "position_mm", "world_mm",     "at_infinity",
+                                                          "blur_mm", "weight",      "extent_stops", "fixes_distance"};
+const std::initializer_list<std::string_view> still_keys{"id",      "position_mm", "world_mm",     "at_infinity",
+                                                         "blur_mm", "weight",      "extent_stops", "fixes_distance",
+                                                         "from_s",  "until_s"};
+const std::initializer_list<std::string_view> moving_keys{"id", "fixes_distance", "from_s", "until_s", "keys"};
+const std::initializer_list<std::string_view> moment_keys{"time_s",  "position_mm", "world_mm",    "at_infinity",
+                                                          "blur_mm", "weight",      "extent_stops"};
+const std::initializer_list<std::string_view> focal_keys{
+    "id",      "pixel",   "position_mm", "world_mm",     "at_infinity", "distance_mm",
+    "blur_mm", "blur_px", "weight",      "extent_stops", "fade",        "fixes_distance"};
 
 constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::shepard};
 constexpr Range extent_range{-20, 20, "a number of stops from -20 to 20"};
@@ -32,7 +48,11 @@ struct Entry : JsonEntry {
     }
     const bool at_infinity = flag("at_infinity", false);
     const std::vector<double> at = numbers(place_key(), 3, "three finite numbers, [x, y, z]");
-    if (at.empty()) return {};
+    if (at.empty()) {
+      if (has("at_infinity")) throw Error(where + ": has at_infinity; must be left out without position_mm");
+      return {};
+    }
+    if (at_infinity && at == std::vector<double>(3)) refuse(place_key(), "a direction that is not 0");
     return petzval::ScenePoint{{at[0], at[1], at[2]}, at_infinity};
   }
   const char* place_key() const { return has("world_mm") ? "world_mm" : "position_mm"; }
@@ -44,21 +64,29 @@ struct Entry : JsonEntry {
   double weight() const { return number("weight", weight_range).value_or(1); }
   std::optional<double> extent() const { return number("extent_stops", extent_range); }
   bool fixes_distance() const { return flag("fixes_distance", true); }
+  /// Refuses a point without a distance that has no extent, or that has a blur.
+  void need_distance(bool has_distance) const {
+    if (has_distance) return;
+    if (!has("extent_stops")) {
+      throw Error(where + ": has neither a distance in focus nor extent_stops; must have one of them");
+    }
+    for (const char* blur : {"blur_mm", "blur_px"}) {
+      if (has(blur)) throw Error(where + ": has " + blur + "; must be left out without a distance in focus");
+    }
+  }
   /// The time, which must be later than the time before.
   double time(std::optional<double> before) const {
     const std::optional<double> time = number("time_s", finite_number);
-    if (!time || (before && !(*before < *time))) {
-      refuse("time_s", "a time after the previous key");
-    }
+    if (!time) refuse("time_s", finite_number.words);
+    if (before && !(*before < *time)) refuse("time_s", "a time after the previous key");
     return *time;
   }
   /// A point of the lens frame, without a picture.
-  petzval::FocusKey in_lens_frame() const {
-    for (const char* key : {"pixel", "distance_mm", "blur_px", "fade"}) {
-      if (has(key)) throw Error(where + ": " + key + " is for focal surfaces; must be left out");
-    }
-    const auto point = place();
-    if (!point) throw Error(where + ": has neither position_mm (or world_mm) nor keys; must have one of them");
+  petzval::FocusKey in_lens_frame(const WorldToLens& to_lens, bool has_distance) const {
+    std::optional<petzval::ScenePoint> point = place();
+    if (!point) refuse("position_mm", "three finite numbers, [x, y, z]");
+    need_distance(has_distance);
+    point->position = to_lens(point->position) - (point->at_infinity ? to_lens({0, 0, 0}) : Vec3<double>{});
     return {.anchor = *point,
             .blur_mm = number("blur_mm", finite_number).value_or(0),
             .weight = weight(),
@@ -88,19 +116,13 @@ void for_entries(const std::string& where, const Json& list, const std::string& 
   }
 }
 
-template <class Use>
-void for_points(const std::string& file, const Use& use) {
-  for_entries(file, points_of(file), "point", [&](const Entry& entry) {
-    entry.keys({"id", "pixel", "position_mm", "world_mm", "at_infinity", "distance_mm", "blur_mm", "blur_px", "weight",
-                "extent_stops", "fade", "fixes_distance", "from_s", "until_s", "keys"});
-    use(entry);
-  });
-}
+bool in_front(const petzval::FocusKey& key) { return std::get<petzval::ScenePoint>(key.anchor).position.z < 0; }
 
 petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camera, double counted_from,
                                 const WorldToLens& to_lens) {
   const std::string& where = entry.where;
   const double entrance_z = petzval::pupils(camera.lens()).entrance.z;
+  entry.keys(focal_keys);
   const std::vector<double> pixel = entry.numbers("pixel", 2, "two finite numbers, [x, y]");
   const auto world = entry.place();
   if (pixel.empty() != world.has_value()) {
@@ -124,6 +146,7 @@ petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camer
     point.inverse_distance = world->at_infinity ? 0 : 1 / (entrance_z - position.z);
   }
   if (const auto distance = entry.distance()) {
+    if (world && world->at_infinity) throw Error(where + ": has distance_mm; must be left out with at_infinity");
     const double from_pupil = *distance + entrance_z - counted_from;
     if (!(from_pupil > 0)) {
       entry.refuse("distance_mm",
@@ -132,11 +155,9 @@ petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camer
     point.inverse_distance = 1 / from_pupil;
   }
   if (!entry.fixes_distance()) point.inverse_distance.reset();
-  if (!point.inverse_distance && !point.extent_stops) {
-    throw Error(where + ": has neither distance_mm nor extent_stops; must have one of them");
-  }
+  entry.need_distance(point.inverse_distance.has_value());
   const auto px = entry.number("blur_px", finite_number), mm = entry.number("blur_mm", finite_number);
-  if ((px || mm) && !point.inverse_distance) throw Error(where + ": has a blur; must be left out without distance_mm");
+  if (px && mm) throw Error(where + ": has both of blur_px and blur_mm; must have one of them");
   point.blur_mm = px ? *px * camera.film().pixel_mm() : mm.value_or(0);
   return point;
 }
@@ -145,31 +166,37 @@ petzval::FocalPoint focal_point(const Entry& entry, const petzval::Camera& camer
 
 std::vector<petzval::FocusTarget> read_targets(const std::string& file) {
   std::vector<petzval::FocusTarget> result;
-  if (points_of(file).empty()) return result;
-  for_points(file, [&](const Entry& entry) {
-    const petzval::FocusKey key = entry.in_lens_frame();
-    result.push_back({*entry.place(), key.blur_mm, key.weight, key.extent_stops, entry.fixes_distance()});
+  const Json points = points_of(file);
+  if (points.empty()) return result;
+  for_entries(file, points, "point", [&](const Entry& entry) {
+    entry.keys(target_keys);
+    const bool fixes = entry.fixes_distance();
+    const petzval::FocusKey key = entry.in_lens_frame(std::identity(), fixes);
+    result.push_back({std::get<petzval::ScenePoint>(key.anchor), key.blur_mm, key.weight, key.extent_stops, fixes});
   });
   return result;
 }
 
-std::vector<petzval::FocusPoint> read_focus_points(const std::string& file) {
+std::vector<petzval::FocusPoint> read_focus_points(const std::string& file, const WorldToLens& to_lens) {
   std::vector<petzval::FocusPoint> result;
-  for_points(file, [&](const Entry& entry) {
+  for_entries(file, points_of(file), "point", [&](const Entry& entry) {
+    const bool moves = entry.has("keys");
+    entry.keys(moves ? moving_keys : still_keys);
     petzval::FocusPoint point{.keys = {}, .fixes_distance = entry.fixes_distance()};
     point.from = entry.number("from_s", finite_number).value_or(point.from);
     point.until = entry.number("until_s", finite_number).value_or(point.until);
     if (!(point.until >= point.from)) entry.refuse("until_s", "a time not before from_s");
-    if (!entry.has("keys")) point.keys = {entry.in_lens_frame()};
+    if (!moves) point.keys = {entry.in_lens_frame(to_lens, point.fixes_distance)};
     const auto add = [&](const Entry& key) {
-      key.keys({"time_s", "position_mm", "world_mm", "at_infinity", "blur_mm", "weight", "extent_stops"});
+      key.keys(moment_keys);
       const double time = key.time(point.keys.empty() ? std::nullopt : std::optional(point.keys.back().time));
-      point.keys.push_back(key.in_lens_frame());
+      point.keys.push_back(key.in_lens_frame(to_lens, point.fixes_distance));
       point.keys.back().time = time;
       if (point.keys.back().extent_stops.has_value() == point.keys.front().extent_stops.has_value()) return;
       throw Error(key.where + ": extent_stops must be given in all keys of the point or in no key");
     };
-    if (entry.has("keys")) for_entries(entry.where + ": keys", entry.json["keys"], "key", add);
+    if (moves) for_entries(entry.where + ": keys", entry.json["keys"], "key", add);
+    if (std::ranges::none_of(point.keys, in_front)) throw Error(entry.where + ": is never in front of the lens");
     result.push_back(std::move(point));
   });
   return result;
@@ -202,11 +229,16 @@ petzval::FocalSurface read_focal_surface(const std::string& file, petzval::Camer
   const petzval::Lens& lens = camera.lens();
   const double from_z = petzval::origin_z(lens, setup.focus.origin);
   setup.focal_points.clear();
-  for_points(file,
-             [&](const Entry& entry) { setup.focal_points.push_back(focal_point(entry, camera, from_z, to_lens)); });
+  for_entries(file, points_of(file), "point",
+              [&](const Entry& entry) { setup.focal_points.push_back(focal_point(entry, camera, from_z, to_lens)); });
   setup.focal_surface.default_inverse_distance = 1 / (*setup.focus_mm + petzval::pupils(lens).entrance.z - from_z);
+  return focal_surface(file, petzval::thick_lens(lens), camera.film(), setup);
+}
+
+petzval::FocalSurface focal_surface(const std::string& file, const petzval::IdealLens& lens, const petzval::Film& film,
+                                    const petzval::CameraSetup& setup) {
   try {
-    return {petzval::thick_lens(lens), camera.film(), setup.focal_points, setup.focal_surface};
+    return {lens, film, setup.focal_points, setup.focal_surface};
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }

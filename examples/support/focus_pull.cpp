@@ -11,35 +11,6 @@
 #include "text.hpp"
 
 namespace examples {
-namespace {
-
-constexpr Range frame_counts{1, 100000, "a whole number from 1 to 100000"};
-
-}  // namespace
-
-std::uint32_t FocusPull::count(petzval::DistanceOrigin from, const std::string& points) const {
-  if (frames_per_s > 0 && points.empty() && !text.ends_with(".json")) {
-    throw petzval::Error("--fps = " + number(frames_per_s) + ": must be used with --focus KEYS.json or --points");
-  }
-  if (!moves()) return std::max(frames, 1u);
-  const std::string given = "--focus = " + text;
-  if (!points.empty()) throw petzval::Error(given + " with --points; must be one distance");
-  if (!origin.empty() && origin != name(from)) {
-    throw petzval::Error(text + ": distance_from = " + origin + "; must be the value of --from, " +
-                         std::string(name(from)));
-  }
-  if (!text.ends_with(".json")) {
-    if (frames < 2) throw petzval::Error(given + ": must be used with --frames of 2 or more");
-    return frames;
-  }
-  const double all = std::floor((keys.back().time_s - keys.front().time_s) / time_s(1) + 1e-6) + 1;
-  if (frames == 0 && !(all <= frame_counts.most)) {
-    throw petzval::Error(text + ": frames = " + number(all) + "; must be at most " + number(frame_counts.most) +
-                         " or limited by --frames");
-  }
-  return frames > 0 ? frames : static_cast<std::uint32_t>(all);
-}
-
 double FocusPull::distance_mm(std::uint32_t frame, std::uint32_t count) const {
   const double time =
       text.ends_with(".json") ? keys.front().time_s + time_s(frame) : frame / (static_cast<double>(count) - 1);
@@ -71,7 +42,7 @@ void add_focus_pull(App& app, FocusPull& pull, std::optional<double>& focus_mm, 
          "equal; KEYS.json: distances over time, as petzval pull writes them")
       ->type_name("LENGTH|A:B|KEYS.json")
       ->required();
-  add_count(app, "--frames", pull.frames, frame_counts, "number of frames; " + frames_help)
+  add_count(app, "--frames", pull.frames, FocusPull::frame_counts, "number of frames; " + frames_help)
       ->default_str("1; KEYS.json: up to the last key");
   add_number(app, "--fps", pull.frames_per_s, positive_number, "frames per second, for times of keys")
       ->default_str("24");

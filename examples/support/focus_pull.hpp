@@ -13,6 +13,7 @@ namespace examples {
 ///
 /// 1/distance is linear in time between keys. The film then moves uniformly, and infinity is an ordinary distance.
 struct FocusPull {
+  static constexpr Range frame_counts{1, 100000, "a whole number from 1 to 100000"};
   struct Key {
     double time_s = 0, inverse_mm = 0;
   };
@@ -23,11 +24,6 @@ struct FocusPull {
   double frames_per_s = 0;     ///< 0: not given, 24
 
   bool moves() const noexcept { return !keys.empty(); }
-  /// Number of frames: --frames, the frames of a file, or 1.
-  /// @param from    value of --from
-  /// @param points  file of a focal surface; must be empty if the focus moves
-  /// @throws petzval::Error that names the flag
-  std::uint32_t count(petzval::DistanceOrigin from, const std::string& points) const;
   /// Time of a frame, s.
   double time_s(std::uint32_t frame) const noexcept { return frame / (frames_per_s > 0 ? frames_per_s : 24); }
   /// Distance in focus in a frame of `count` frames, mm.

@@ -22,7 +22,7 @@ void check(const ScenePoint& scene_point, const std::string& where) {
   const auto& [p, at_infinity] = scene_point;
   const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
   if (finite(p) && !nowhere) return;
-  throw Error(where + "place = (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "); must be " +
+  throw Error(where + "position = (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "); must be " +
               (at_infinity ? "a direction, finite and not 0" : "finite"));
 }
 

@@ -334,10 +334,10 @@ TEST(FocalSurface, RefusesInvalidPoints) {
   expect_error(with(&P::fade, 1.5), {"focal surface", "point 2", "fade", 1.5});
   expect_error(with(&P::fade, nan), {"focal surface", "point 2", "fade", "nan"});
   expect_error(surface({.film_point = {nan, 0}, .inverse_distance = 1e-3}),
-               {"focal surface", "point 2", "place", "nan", 0});
+               {"focal surface", "point 2", "film point", "nan", 0});
   const auto points = std::vector{good};
   const auto weightless = std::vector{FocalPoint{.inverse_distance = 1e-3, .weight = 0}, FocalPoint{}};
-  expect_error(surface({.film_point = {1, 1e8}, .inverse_distance = 1e-3}), {"focal surface", "point 2", "place", 1e8});
+  expect_error(surface({.film_point = {1, 1e8}, .inverse_distance = 1e-3}), {"focal surface", "point 2", "film point", 1e8});
   expect_error([&] { FocalSurface(lens, film, {}); }, {"focal surface", "points", 0});
   expect_error([&] { FocalSurface(lens, film, weightless); }, {"focal surface", "points", 2});
   expect_error([&] { FocalSurface(lens, film, points, {.beta = 0.9}); }, {"focal surface", "beta", 0.9});

@@ -184,6 +184,17 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
+TEST_F(LensBlurProgram, PointsOfTheWorld_OneFrameAndSeveral_AreTheSame) {
+  write("points.json", R"([{"world_mm": [100, -500, -11000]}, {"world_mm": [-500, 1000, -8000]}])");
+  const Arguments miniature =
+      joined({thin, small, {"--scene", "miniature", "--focus", "9m", "--points", path("points.json")}});
+  blur(miniature, "still");
+  blur(joined({miniature, {"--frames", "2"}}), "frames");
+  EXPECT_EQ(picture("frames/blur_0002.pfm").pixels, picture("still/blur.pfm").pixels);
+  write("points.json", R"([{"position_mm": [0, 0, -5000]}, {"position_mm": [-2600, 6000, 9000]}])");
+  expect_failure("blur", joined({miniature, {"--frames", "2", "--out", path("out")}}), {"points.json", "point 2"});
+}
+
 TEST_F(LensBlurProgram, Frames_StillPixels_DoNotFlicker) {
   write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -5000]},
     {"time_s": 1, "position_mm": [0, 0, -2000]}]}])");
@@ -226,6 +237,11 @@ TEST_F(LensBlurProgram, FocusPull_WithoutFramesOrWithPoints_IsRefused) {
   refused({"--focus", "2m:4m"}, {"--focus", "2m:4m", "--frames"});
   refused({"--focus", "2m:-4m", "--frames", "2"}, {"--focus", "-4m"});
   refused({"--focus", "2m:4m", "--frames", "2", "--points", path("points.json")}, {"--focus", "--points"});
+  blur(joined({thin, small, {"--scene", "town", "--focus", "2m", "--points", path("points.json")}}), "still");
+  expect_failure("blur",
+                 {"--setup", path("still/blur.json"), "--scene", "town", "--focus", "2m:4m", "--frames", "2", "--out",
+                  path("out")},
+                 {"--focus", "blur.json"});
   refused({"--focus", path("keys.json")}, {"keys.json", "film", "--from", "front_vertex"});
   refused({"--focus", "2m", "--points", path("keys.json")}, {"keys.json", "--focus"});
   write("keys.json", R"({"keys": [{"time_s": 1, "distance_mm": 2000}, {"time_s": 1, "distance_mm": 3000}]})");
@@ -242,7 +258,7 @@ TEST_F(LensBlurProgram, FocalSurface_RealLens_NamesItsModel) {
                       {"--focus", "2m", "--points", path("points.json"), "--format", "png", "--out", path("out")}}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(read_json(path("out/blur.json"))["model"], "thick");
-  petzval::testing::expect_tokens(outcome.err, {"note", "--points", "thick"});
+  petzval::testing::expect_tokens(outcome.err, {"note", "focal surface", "thick"});
 }
 
 TEST_F(LensBlurProgram, DepthsInMetres_WithTheirUnit_EqualMillimetres) {

@@ -169,12 +169,19 @@ TEST_F(Setup, PsfUsesASetupAndStatesWhatItUsed) {
 TEST_F(Setup, ReportOfSeveralLensesNeedsOneOfThem) {
   const Arguments lenses = expanded({"LENS", "LENS:double_gauss_52mm_f1.8"});
   Arguments line{lenses[0], lenses[1], "--focus", "1m", "--f-number", "4", "--at", "2m", "--rays", "64"};
+  line.push_back("--match-glasses");
   line.insert(line.end(), {"--format", "exr", "--out", path("two")});
   ASSERT_EQ(run("psf", line).status, 0);
   const Arguments setup{"--setup", path("two/bokeh.json"), "--size", "8x8"};
   const json found = report("render", {setup[0], setup[1], setup[2], setup[3], lenses[1]}, "one")["setup"];
   EXPECT_EQ(found["lens"]["file"], lenses[1]);
+  EXPECT_EQ(found["lens"]["match_glasses"], true);
   EXPECT_EQ(found["f_number"], 4);
+  for (const json& lenses_of_file : {json(3), json::array(), json{3}, json{{{"setup", json::object()}}}}) {
+    write("lenses.json", json{{"lenses", lenses_of_file}}.dump());
+    expect_failure("render", {"--scene", "balls", "--setup", path("lenses.json"), "--out", path("out")},
+                   {"lenses.json", "lenses"});
+  }
   Arguments without{"--scene", "balls", "--out", path("out")};
   without.insert(without.end(), setup.begin(), setup.end());
   expect_failure("render", without, {"bokeh.json", "LENS", lenses[0], lenses[1]});
@@ -253,6 +260,10 @@ TEST_F(Setup, FlagsReplaceValuesThatFollowFromThem) {
   EXPECT_NE(far["lens"].value("primary_nm", json()), 600);
   EXPECT_NE(far["focal_surface"].value("default_inverse_distance", json()),
             setup["focal_surface"]["default_inverse_distance"]);
+  for (const Arguments& change : {Arguments{"--criterion", "paraxial"}, Arguments{"--from", "film"}}) {
+    const json moved = report("render", {"--setup", "@at.json", change[0], change[1]}, "moved")["setup"];
+    EXPECT_FALSE(moved["film"].contains("z_mm")) << change[0];
+  }
   const json wide = report("render", {"--setup", "@first.json", "--film", "36x18"}, "wide")["setup"]["film"];
   EXPECT_EQ(wide["rows"], 4);
 }

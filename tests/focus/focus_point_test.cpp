@@ -263,8 +263,8 @@ TEST(FocusPoints, RefuseInvalidPoints) {
   expect_tokens(says(point({})), {"focus point 1", "keys"});
   expect_tokens(says(point({key(1, {0, 0, -9}), key(1, {0, 0, -9})})), {"focus point 1", "key 1", "time", 1});
   expect_tokens(says(point({key(nan, {0, 0, -9})})), {"focus point 1", "key 0", "time", "nan"});
-  expect_tokens(says(point({key(0, {nan, 0, -9})})), {"focus point 1", "key 0", "place", "nan", 0, -9});
-  expect_tokens(says(point({far_key(0, {0, 0, 0})})), {"focus point 1", "key 0", "place", 0, 0, 0});
+  expect_tokens(says(point({key(0, {nan, 0, -9})})), {"focus point 1", "key 0", "position", "nan", 0, -9});
+  expect_tokens(says(point({far_key(0, {0, 0, 0})})), {"focus point 1", "key 0", "position", 0, 0, 0});
   expect_tokens(says(point({key(0, {0, 0, -9}, infinity)})), {"focus point 1", "key 0", "blur", "inf"});
   expect_tokens(says(point({key(0, {0, 0, -9}, 0, -1)})), {"focus point 1", "key 0", "weight", -1});
   expect_tokens(says(point({on_triangle(0, {0, 1, 3}, {0, 0.5, 0.5})})), {"focus point 1", "key 0", "vertex", 3});
