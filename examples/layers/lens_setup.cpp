@@ -95,7 +95,7 @@ void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_he
   add_bokeh(app, flags.setup);
   examples::add_focal_surface(app, flags.setup,
                               "focal surface: the distances in focus at points of the picture; with --frames, focus "
-                              "points with keys, in the lens frame. A real lens is replaced by its thick lens");
+                              "points with keys. A real lens is replaced by its thick lens");
   add_expressive(app, flags.setup);
 }
 
@@ -112,9 +112,13 @@ petzval::Lens lens_of(LensFlags& flags) {
   if (flags.thin() && !setup.f_number) throw Error("--thin-lens needs --f-number");
   if (flags.thin()) setup.focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
   const bool coloured = flags.coloured();
+  const std::vector<double> stated = source.wavelengths_nm;
   // The focus is set at the d line, even if the colours have their own wavelengths.
   source.wavelengths_nm = {petzval::d_line_nm};
   if (coloured) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(source.wavelengths_nm));
+  if (!setup.file.empty() && !stated.empty() && stated != source.wavelengths_nm) {
+    examples::note(setup.file + ": lens.wavelengths_nm are not used by blur; --wavelengths is " + flags.wavelengths);
+  }
   if (!flags.singlet.empty()) {
     source.prescription = singlet_of(flags.singlet, petzval::glass_tables());
     if (!setup.f_number) setup.f_number = 2;

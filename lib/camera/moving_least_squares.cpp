@@ -28,8 +28,8 @@ double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -100
 void check(const WeighedValue& point, double side, const std::string& where) {
   const auto& [film_point, value, weight, fade] = point;
   if (!(std::abs(film_point.x) <= reach_in_sides * side && std::abs(film_point.y) <= reach_in_sides * side)) {
-    throw Error(where + "film point = (" + to_text(film_point.x) + ", " + to_text(film_point.y) + ") mm; must be within " +
-                to_text(reach_in_sides * side) + " mm");
+    throw Error(where + "film point = (" + to_text(film_point.x) + ", " + to_text(film_point.y) +
+                ") mm; must be within " + to_text(reach_in_sides * side) + " mm");
   }
   if (!std::isfinite(value)) throw Error(where + "value = " + to_text(value) + "; must be finite");
   if (!std::isfinite(weight) || weight < 0) {

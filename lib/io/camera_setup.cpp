@@ -19,6 +19,7 @@ constexpr Range count_rule{1, 2147483647, "a whole number from 1 to 2147483647"}
 constexpr Range length_rule{0, 1e9, "a number from 0 to 1e9"};
 constexpr Range angle_rule{-3.1415926535897932, 3.1415926535897932, "an angle from -pi to pi"};
 constexpr Range extent_rule{-20, 20, "a number from -20 to 20"};
+constexpr Range wavelength_rule{10, 1e5, "10 to 100000 nm"};
 constexpr Range fraction_rule{0, 1, "a number from 0 to 1"};
 
 constexpr std::array all_criteria{FocusCriterion::thin, FocusCriterion::paraxial, FocusCriterion::min_rms,
@@ -48,8 +49,8 @@ void members(S& lens, const Of& of) {
   of("file", lens.file), of("prescription", lens.prescription), of("thin_mm", lens.thin_mm, not_negative);
   of("configuration", lens.configuration), of("glass_files", lens.glass_files), of("glasses", lens.glasses);
   of("match_glasses", lens.match_glasses), of("require_glasses", lens.require_glasses);
-  of("clamp_wavelengths", lens.clamp_wavelengths), of("wavelengths_nm", lens.wavelengths_nm, positive);
-  of("primary_nm", lens.primary_nm, positive);
+  of("clamp_wavelengths", lens.clamp_wavelengths), of("wavelengths_nm", lens.wavelengths_nm, wavelength_rule);
+  of("primary_nm", lens.primary_nm, wavelength_rule);
 }
 template <Is<Iris> S, class Of>
 void members(S& iris, const Of& of) {

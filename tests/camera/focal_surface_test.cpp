@@ -337,7 +337,8 @@ TEST(FocalSurface, RefusesInvalidPoints) {
                {"focal surface", "point 2", "film point", "nan", 0});
   const auto points = std::vector{good};
   const auto weightless = std::vector{FocalPoint{.inverse_distance = 1e-3, .weight = 0}, FocalPoint{}};
-  expect_error(surface({.film_point = {1, 1e8}, .inverse_distance = 1e-3}), {"focal surface", "point 2", "film point", 1e8});
+  expect_error(surface({.film_point = {1, 1e8}, .inverse_distance = 1e-3}),
+               {"focal surface", "point 2", "film point", 1e8});
   expect_error([&] { FocalSurface(lens, film, {}); }, {"focal surface", "points", 0});
   expect_error([&] { FocalSurface(lens, film, weightless); }, {"focal surface", "points", 2});
   expect_error([&] { FocalSurface(lens, film, points, {.beta = 0.9}); }, {"focal surface", "beta", 0.9});
