@@ -94,7 +94,7 @@ class Gathering {
                                          : rays_.table.rows_at(channel, tile.left + (c % 2) * tile.columns,
                                                                tile.top + (c / 2) * tile.rows, memory.corners[c]);
     }
-    const GatherLoops& loops = gather_loops();
+    const GatherLoops& loops = gather_loops(!rays_.shift_invariant, rays_.side());
     const auto reach_of = [&](float least, float most) {
       return loops.limits(corners, rays_.shift_invariant ? 1 : 4, stride, stride, least, most);
     };
@@ -143,16 +143,17 @@ class Gathering {
     rays.scratch = memory.scratch.data();
     if (method_.by_blocks) set_tolerances(rays);
     steps_ += loops.follow(job, rays);
-    if (layers_.held_out()) follow_coverage(job, rays, channel, memory);
+    if (layers_.held_out()) follow_coverage(loops, job, rays, channel, memory);
   }
 
   /// Follows the rays again, with coverage and the rounding errors of red and green as their colours.
-  void follow_coverage(TileJob job, const TileRays& rays, std::size_t channel, Memory& memory) const {
+  void follow_coverage(const GatherLoops& loops, TileJob job, const TileRays& rays, std::size_t channel,
+                       Memory& memory) const {
     const std::ptrdiff_t plane = job.window.layer_stride / layers_.planes;
     TileSums &sums = memory.sums[channel], &more = memory.covered;
     job.window.colour[0] = job.window.alpha + plane, job.window.colour[1] = job.window.alpha + 2 * plane;
     job.window.channel = 0, job.sums = &more;
-    gather_loops().follow(job, rays);
+    loops.follow(job, rays);
     std::ranges::copy(more.colour[0], sums.alpha);
     const auto add = [&](int colour, int error) {
       for (int i = 0; i < TileSums::pixels; ++i) sums.colour[colour][i] += more.colour[error][i];
@@ -160,7 +161,7 @@ class Gathering {
     if (job.colours == 3) return add(0, 1), add(1, 2);
     if (channel == 2) return;
     job.window.channel = static_cast<int>(channel) + 1;
-    gather_loops().follow(job, rays);
+    loops.follow(job, rays);
     add(0, 0);
   }
 
