@@ -65,8 +65,8 @@ Keys (pull --keys FILE, blur --frames N --points FILE): points with from_s, unti
   with time_s, position_mm, at_infinity, weight, blur_mm and extent_stops. A point without keys does not move.
 
 Events (view --replay FILE): an object with scene (or image, depth, deep), lens, size, fov_deg and events, a list
-  of objects with type: add_point, move_point, set_point, remove_point, serve, focus, f_number, iris, bokeh,
-  expressive, lens, colour, tilt, weighting, key, time, undo, redo, still. A window of view saves such a file.
+  of objects with type: add_point, move_point, set_point, remove_point, serve, setup, expressive,
+  weighting, key, time, undo, redo, still. A window of view saves such a file.
 
 Rays (trace --table FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
 Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
