@@ -228,7 +228,7 @@ TEST_F(Setup, RefusesFaultsWithFileKeyAndValue) {
   refused("/lens/file", "gone.zmx", {"file", "gone.zmx"});
   refused("/film/tilt_rad", 4, {"tilt_rad", 4});
   refused("/iris/blades", 2, {"iris.blades", 2});
-  refused("/lens/wavelengths_nm", {5}, {"lens.wavelengths_nm", "\"5\""});
+  refused("/lens/wavelengths_nm", {5}, {"wavelengths_nm", 5});
   refused("/lens/wavelengths_nm", {1e6}, {"wavelengths_nm", 1e6});
   refused("/camera/model", "thinnest", {"model", "thinnest"});
   json unfocused = setup;
