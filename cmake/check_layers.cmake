@@ -20,7 +20,7 @@ set(layer_5 pupil_table)
 set(layer_6 focus polynomial)
 set(layer_7 camera)
 set(layer_8 io)
-set(layer_9 analysis blur fit)
+set(layer_9 analysis blur fit ghosts)
 set(layer_10 editor exports)
 set(layer_11 c figure formats image)   # the edge
 set(edge 11)

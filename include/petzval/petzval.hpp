@@ -33,6 +33,7 @@
 /// GLM only. The other components have separate headers:
 ///
 ///     petzval::analysis   petzval/analysis/   spots, PSFs, colour, errors of ray models
+///                         petzval/ghosts/     ghosts and veiling glare
 ///     petzval::exports    petzval/exports/    cameras for other programs: calibrations, distortion, ray maps, shaders
 ///     petzval::formats    petzval/formats/    lenses and glasses in files of other programs
 ///     petzval::fit        petzval/fit/        tilted films that focus several points

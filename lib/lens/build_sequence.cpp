@@ -26,6 +26,11 @@ double furthest2() noexcept {
 constexpr std::size_t surfaces_per_refresh = 16;
 constexpr double steep_rim = 0.75;
 
+/// True if light meets the same surface again, as on the path of a ghost, which may pass the stop three times.
+bool same_surface(const LensSurface& a, const LensSurface& b) noexcept {
+  return a.vertex_z == b.vertex_z && a.curvature == b.curvature && a.semi_diameter == b.semi_diameter;
+}
+
 }  // namespace
 
 template <class R>
@@ -57,7 +62,7 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
                                               : StepKind::sphere;
     step.far = j == 0 || !(std::abs(s.curvature * gap) <= max_gap_ratio);
     step.mirror = s.mirror;
-    step.stop = stop && *stop == i;
+    step.stop = stop && same_surface(s, surfaces[*stop]);
     step.refresh = j > 0 && (j % surfaces_per_refresh == 0 || std::abs(s.curvature) * s.semi_diameter > steep_rim);
     step.surface = static_cast<std::int32_t>(i);
     step.asphere = aspheres[i];

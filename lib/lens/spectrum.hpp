@@ -26,6 +26,14 @@ class Spectrum {
   /// @param kinks wavelengths at which the slope jumps
   void add(const std::function<double(double)>& index_at, std::span<const double> kinks = {});
 
+  /// The same spectrum for spaces in another order.
+  Spectrum along(std::span<const std::size_t> spaces) const {
+    Spectrum result = *this;
+    result.media_.clear();
+    for (const std::size_t space : spaces) result.media_.push_back(media_[space]);
+    return result;
+  }
+
   /// True if a wavelength lies in the range, extended by the rounding of a float.
   bool covers(double nm) const noexcept { return coordinate_.covers(nm); }
   double index(std::size_t space, double nm) const noexcept;

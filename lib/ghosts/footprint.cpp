@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "footprint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/least_squares.hpp"
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/trace/trace.hpp"
+#include "trace/clearances.hpp"
+
+namespace petzval::ghosts_detail {
+namespace {
+
+double cross(const Vec2<double>& a, const Vec2<double>& b) noexcept { return a.x * b.y - a.y * b.x; }
+
+/// Rays as a structure of arrays that owns its numbers.
+struct Rays {
+  explicit Rays(std::size_t count) : count_(count), values_(6 * count) {}
+
+  template <class T = double>
+  RayArrays<T> arrays() noexcept {
+    const auto at = [&](std::size_t k) { return values_.data() + k * count_; };
+    return {at(0), at(1), at(2), at(3), at(4), at(5)};
+  }
+  void set(std::size_t i, const Ray<double>& ray) noexcept {
+    const auto& [o, d] = ray;
+    const std::array values{o.x, o.y, o.z, d.x, d.y, d.z};
+    for (std::size_t k = 0; k < 6; ++k) values_[k * count_ + i] = values[k];
+  }
+  Ray<double> operator[](std::size_t i) const noexcept {
+    const auto at = [&](std::size_t k) { return values_[k * count_ + i]; };
+    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
+  }
+
+ private:
+  std::size_t count_;
+  std::vector<double> values_;
+};
+
+/// Corners of a polygon, at most 6.
+struct Polygon {
+  std::array<Vec2<double>, 6> at;
+  int count = 0;
+
+  double area() const noexcept {
+    double twice = 0;
+    for (int k = 2; k < count; ++k) twice += cross(at[k - 1] - at[0], at[k] - at[0]);
+    return twice / 2;
+  }
+};
+
+/// The part of the unit square about the origin in which an interpolated margin is positive.
+/// @param margins at (-,-), (+,-), (+,+), (-,+)
+Polygon inside(const std::array<double, 4>& margins) noexcept {
+  constexpr std::array<Vec2<double>, 4> corners{Vec2<double>{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+  Polygon result;
+  const auto add = [&](const Vec2<double>& at) { result.at[static_cast<std::size_t>(result.count++)] = at; };
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    const double a = margins[k], b = margins[next];
+    if (a > 0) add(corners[k]);
+    if ((a > 0) != (b > 0)) add(corners[k] + (corners[next] - corners[k]) * (a / (a - b)));
+  }
+  return result;
+}
+
+/// The image of a cell: a point of the film and its derivatives by the position in units of the cell.
+struct Image {
+  Vec2<double> at{0, 0}, u{0, 0}, v{0, 0};
+  bool reached = false;
+};
+
+/// Transmittances as a polynomial of the position in the box, in Chebyshev terms up to a total degree.
+class Fit {
+ public:
+  Fit(int degree, std::span<const Vec2<double>> positions, std::span<const double> values) : degree_(degree) {
+    Eigen::MatrixXd rows(positions.size(), (degree + 1) * (degree + 2) / 2);
+    Eigen::VectorXd wanted(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      terms(positions[i], [&](Eigen::Index k, double value) { rows(row, k) = value; });
+      wanted(row) = values[i];
+    }
+    factors_ = core_detail::least_squares(rows, wanted);
+    error_ = (rows * factors_ - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().mean();
+  }
+  /// Largest residual, relative to the mean.
+  double error() const noexcept { return error_; }
+  double operator()(const Vec2<double>& at) const noexcept {
+    double sum = 0;
+    terms(at, [&](Eigen::Index k, double value) { sum += factors_(k) * value; });
+    return std::max(sum, 0.0);
+  }
+
+ private:
+  static constexpr int most = 8;
+
+  void terms(const Vec2<double>& at, const auto& take) const noexcept {
+    std::array<double, most + 1> x{1, at.x}, y{1, at.y};
+    for (std::size_t k = 2; k <= static_cast<std::size_t>(degree_); ++k) {
+      x[k] = 2 * at.x * x[k - 1] - x[k - 2], y[k] = 2 * at.y * y[k - 1] - y[k - 2];
+    }
+    Eigen::Index k = 0;
+    for (int i = 0; i <= degree_; ++i) {
+      for (int j = 0; i + j <= degree_; ++j) take(k++, x[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(j)]);
+    }
+  }
+
+  int degree_;
+  Eigen::VectorXd factors_;
+  double error_ = 0;
+};
+
+}  // namespace
+
+Entrance::Entrance(const Lens& lens, const ScenePoint& light) {
+  const auto fail = [&](const std::string& what) { throw Error(lens.name() + ": light: " + what); };
+  const Vec3<double>& at = light.position;
+  const double length = glm::length(at);
+  if (!std::isfinite(length) || !(length > 0))
+    fail("position = (" + to_text(at.x) + ", " + to_text(at.y) + ", " + to_text(at.z) +
+         "); must be finite and differ from 0");
+  distance_ = light.at_infinity ? std::numeric_limits<double>::infinity() : length;
+  towards_ = at / length;
+  const double sine = std::hypot(towards_.x, towards_.y);
+  const Vec2<double> azimuth = sine > 0 ? Vec2<double>(towards_.x, towards_.y) / sine : Vec2<double>(0, 1);
+  x_axis_ = {azimuth.y, -azimuth.x, 0};
+  y_axis_ = -glm::cross(x_axis_, towards_);
+
+  const double rim = lens.surfaces()[0].semi_diameter;
+  if (!std::isfinite(rim)) fail("surface 0: semi_diameter is unlimited; must be finite");
+  if (!light.at_infinity && std::hypot(at.x, at.y) <= rim && !(at.z < sag(lens, 0, at.x, at.y))) {
+    fail("z = " + to_text(at.z) + " mm; must be in front of surface 0");
+  }
+  box_ = {{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()},
+          {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest()}};
+  constexpr int rings = 16, directions = 64;
+  for (int k = 0; k <= rings * directions; ++k) {
+    const double r = rim * (1 + k / directions) / rings, angle = 2 * std::numbers::pi * (k % directions) / directions;
+    Vec3<double> p{r * std::sin(angle), r * std::cos(angle), 0};
+    if (k == rings * directions) p.x = p.y = 0;
+    p.z = sag(lens, 0, p.x, p.y);
+    if (!std::isfinite(p.z)) continue;
+    if (!light.at_infinity) {
+      const Vec3<double> from = p - at;
+      const double depth = -glm::dot(from, towards_);
+      if (!(depth > 0.05 * glm::length(from))) {
+        fail("distance = " + to_text(length) + " mm; must be larger: surface 0 is seen at more than 87 degrees");
+      }
+      p = at + from * (length / depth);
+    }
+    const Vec2<double> q{glm::dot(p, x_axis_), glm::dot(p, y_axis_)};
+    box_ = {{std::min(box_.low.x, q.x), std::min(box_.low.y, q.y)},
+            {std::max(box_.high.x, q.x), std::max(box_.high.y, q.y)}};
+  }
+  const Vec2<double> margin = 0.01 * (box_.high - box_.low);
+  box_.low -= margin, box_.high += margin;
+}
+
+double Entrance::flux(const Vec2<double>& at) const noexcept {
+  if (std::isinf(distance_)) return 1;
+  const double secant2 = 1 + glm::dot(at, at) / (distance_ * distance_);
+  return 1 / (secant2 * std::sqrt(secant2));
+}
+
+std::array<Ray<double>, 3> Entrance::differential(const Vec2<double>& at) const noexcept {
+  const Vec3<double> origin = x_axis_ * at.x + y_axis_ * at.y;
+  if (std::isinf(distance_)) return {Ray<double>{origin, -towards_}, {x_axis_, {0, 0, 0}}, {y_axis_, {0, 0, 0}}};
+  const Vec3<double> from = origin - towards_ * distance_;
+  const double length = glm::length(from);
+  const Vec3<double> d = from / length;
+  const auto by = [&](const Vec3<double>& axis) { return (axis - d * glm::dot(axis, d)) / length; };
+  return {Ray<double>{origin, d}, {x_axis_, by(x_axis_)}, {y_axis_, by(y_axis_)}};
+}
+
+LightPath::LightPath(const Lens& lens, std::vector<lens_detail::Passage> path)
+    : path_(std::move(path)),
+      lens_(lens_detail::along(lens, path_)),
+      film_sense_(lens.light_direction(lens.surface_count())) {}
+
+std::vector<double> LightPath::margins(const Entrance& entrance, const Box& box, std::size_t cells,
+                                       Wavelength wavelength) const {
+  const std::size_t side = cells + 1, count = side * side;
+  Rays rays(count);
+  const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
+  for (std::size_t i = 0; i < count; ++i) {
+    rays.set(i,
+             entrance.ray(box.low + step * Vec2<double>(static_cast<double>(i % side), static_cast<double>(i / side))));
+  }
+  std::vector<double> result(count);
+  trace_detail::clearances<double>(lens_, count, rays.arrays(), result.data(),
+                                   {.wavelengths = {.all = wavelength}, .apertures = false});
+  // From 1 - r^2 / R^2, or v / (1 - v) below 0, to 1 - r / R, which is nearly linear across a rim.
+  for (double& value : result) {
+    const double square = value >= 0 ? 1 - value : value > -1 ? 1 - value / (1 + value) : 4;
+    value = 1 - std::min(std::sqrt(std::max(square, 0.0)), 10.0);
+  }
+  return result;
+}
+
+Box LightPath::region(const Entrance& entrance, Wavelength wavelength) const {
+  constexpr std::size_t cells = 24, side = cells + 1;
+  Box box = entrance.box();
+  for (int round = 0; round < 6; ++round) {
+    const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(margin) - margin.begin());
+    std::array<std::size_t, 2> low{best % side, best / side}, high = low;
+    for (std::size_t i = 0; i < margin.size(); ++i) {
+      if (!(margin[i] > 0)) continue;
+      for (const auto& [axis, at] : {std::pair{0, i % side}, std::pair{1, i / side}}) {
+        low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
+      }
+    }
+    const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
+    Box next = box;
+    for (const int axis : {0, 1}) {
+      next.low[axis] = box.low[axis] + step[axis] * (static_cast<double>(low[axis]) - 1.0);
+      next.high[axis] = box.low[axis] + step[axis] * (static_cast<double>(high[axis]) + 1.0);
+    }
+    if (margin[best] > 0 && high[0] - low[0] > cells / 2 && high[1] - low[1] > cells / 2) return next;
+    box = next;
+    if (round == 5) return margin[best] > 0 ? next : Box{};
+  }
+  return {};
+}
+
+double LightPath::entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const {
+  const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+  const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
+  double sum = 0;
+  for (std::size_t i = 0; i < cells * cells; ++i) {
+    const std::size_t x = i % cells, y = i / cells, at = y * (cells + 1) + x;
+    const double area = inside({margin[at], margin[at + 1], margin[at + cells + 2], margin[at + cells + 1]}).area();
+    sum +=
+        area * entrance.flux(box.low + step * Vec2<double>(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
+  }
+  return sum * step.x * step.y;
+}
+
+Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::size_t cells, const Surfaces& surfaces,
+                               Wavelength wavelength, const Film& film) const {
+  Footprint result;
+  const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
+  if (!(step.x > 0 && step.y > 0)) return result;
+  const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+  std::vector<Polygon> shapes(cells * cells);
+  std::vector<std::size_t> lit;
+  std::vector<std::uint8_t> traced(cells * cells);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::size_t at = i / cells * (cells + 1) + i % cells;
+    shapes[i] = inside({margin[at], margin[at + 1], margin[at + cells + 2], margin[at + cells + 1]});
+    if (shapes[i].count >= 3) lit.push_back(i);
+  }
+
+  // Rays through the middles, with their derivatives by the position in the cell.
+  const std::size_t count = lit.size();
+  if (count == 0) return result;
+  Rays rays(count), by_u(count), by_v(count);
+  const auto position = [&](std::size_t i) {
+    return Vec2<double>(static_cast<double>(i % cells) + 0.5, static_cast<double>(i / cells) + 0.5);
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [ray, u, v] = entrance.differential(box.low + step * position(lit[k]));
+    rays.set(k, ray);
+    by_u.set(k, {u.origin * step.x, u.direction * step.x});
+    by_v.set(k, {v.origin * step.y, v.direction * step.y});
+  }
+  std::vector<RayFate> fates(count);
+  const RayTangents<double> tangents{by_u.arrays(), by_v.arrays()};
+  trace_differentials<double>(lens_, count, rays.arrays<const double>(),
+                              {by_u.arrays<const double>(), by_v.arrays<const double>()}, rays.arrays(), tangents,
+                              fates.data(), nullptr, {.wavelengths = {.all = wavelength}, .apertures = false});
+
+  std::vector<Image> images(cells * cells);
+  const Vec3<double> normal = film.normal(), right = film.right(), up = film.up();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [o, d] = rays[k];
+    const double along = glm::dot(d, normal);
+    if (fates[k] != RayFate::transmitted || !(along * film_sense_ > 0)) continue;
+    const double t = glm::dot(film.position({}) - o, normal) / along;
+    const FilmPoint at = film.point(o + d * t);
+    const auto by = [&](const Ray<double>& dot) {
+      const Vec3<double> moved = dot.origin + dot.direction * t;
+      const Vec3<double> on_film = moved - d * (glm::dot(moved, normal) / along);
+      return Vec2<double>(glm::dot(on_film, right), glm::dot(on_film, up));
+    };
+    const Image image{{at.x, at.y}, by(by_u[k]), by(by_v[k]), true};
+    const double sum = image.at.x + image.at.y + image.u.x + image.u.y + image.v.x + image.v.y;
+    if (std::isfinite(sum)) images[lit[k]] = image;
+  }
+  std::erase_if(lit, [&](std::size_t i) { return !images[i].reached; });
+
+  // Transmittances vary slowly: a polynomial through some exact rays, or all rays if it does not fit.
+  const auto in_box = [&](std::size_t i) { return position(i) * (2.0 / static_cast<double>(cells)) - 1.0; };
+  const auto power = [&](std::size_t i) {
+    const Ray<double> ray = entrance.ray(box.low + step * position(i));
+    return surfaces.power(path_, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction)).value_or(0);
+  };
+  std::optional<Fit> fit;
+  for (const int degree : {4, 8}) {
+    constexpr double tolerance = 1e-3;
+    const std::size_t samples = static_cast<std::size_t>(3 * (degree + 1) * (degree + 2) / 2);
+    if (lit.size() < 2 * samples) break;
+    std::vector<Vec2<double>> at;
+    std::vector<double> values;
+    for (std::size_t k = 0; k < samples; ++k) {
+      const std::size_t i = lit[k * (lit.size() - 1) / (samples - 1)];
+      at.push_back(in_box(i)), values.push_back(power(i));
+    }
+    fit.emplace(degree, at, values);
+    result.weight_error = fit->error();
+    if (fit->error() < tolerance) break;
+    fit.reset();
+  }
+  if (!fit) result.weight_error = 0;
+
+  const auto neighbour = [&](std::size_t i, std::size_t axis, int by) -> const Image* {
+    const std::size_t at = axis == 0 ? i % cells : i / cells, stride = axis == 0 ? 1 : cells;
+    if (by < 0 ? at == 0 : at + 1 == cells) return nullptr;
+    const Image& image = images[by < 0 ? i - stride : i + stride];
+    return image.reached ? &image : nullptr;
+  };
+  for (const std::size_t i : lit) {
+    const Image& image = images[i];
+    // Second derivatives, from the derivatives of adjacent rays.
+    std::array<Vec2<double>, 2> bend_u{}, bend_v{};
+    for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+      const Image *before = neighbour(i, axis, -1), *behind = neighbour(i, axis, 1);
+      if (!before && !behind) continue;
+      const double scale = before && behind ? 0.5 : 1;
+      const Image &from = before ? *before : image, &to = behind ? *behind : image;
+      bend_u[axis] = (to.u - from.u) * scale, bend_v[axis] = (to.v - from.v) * scale;
+    }
+    const Vec2<double> mixed = (bend_u[1] + bend_v[0]) * 0.5;
+    const auto at = [&](const Vec2<double>& q, double bend) {
+      return image.at + image.u * q.x + image.v * q.y +
+             (bend_u[0] * (q.x * q.x / 2) + mixed * (q.x * q.y) + bend_v[1] * (q.y * q.y / 2)) * bend;
+    };
+    const Polygon& shape = shapes[i];
+    const double sense = cross(image.u, image.v);
+    Deposit deposit{.count = shape.count, .mirrored = sense < 0};
+    bool convex = true;
+    for (int k = 0; k < shape.count; ++k) deposit.corners[k] = at(shape.at[k], 1);
+    for (int k = 0; k < shape.count; ++k) {
+      const auto corner = [&](int m) { return deposit.corners[static_cast<std::size_t>((k + m) % shape.count)]; };
+      convex = convex && cross(corner(1) - corner(0), corner(2) - corner(1)) * sense > 0;
+    }
+    // Near a caustic the parallelogram of the tangents stays simple.
+    for (int k = 0; k < shape.count && !convex; ++k) deposit.corners[k] = at(shape.at[k], 0);
+    if (const Image* next = neighbour(i, 0, 1); next && convex) {
+      const Vec2<double> gap = at({0.5, 0.5}, 1) - next->at + next->u * 0.5 - next->v * 0.5 - (mixed * -0.25) -
+                               (bend_u[0] + bend_v[1]) * 0.125;
+      result.mismatch_mm = std::max(result.mismatch_mm, glm::length(gap));
+    }
+    const double transmitted = fit ? (*fit)(in_box(i)) : power(i);
+    deposit.energy = transmitted * shape.area() * step.x * step.y * entrance.flux(box.low + step * position(i));
+    result.energy += deposit.energy;
+    result.deposits.push_back(deposit);
+  }
+  return result;
+}
+
+}  // namespace petzval::ghosts_detail

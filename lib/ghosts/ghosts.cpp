@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/ghosts/ghosts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "area_raster.hpp"
+#include "core/text.hpp"
+#include "footprint.hpp"
+#include "ghost_paths.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+
+namespace petzval {
+namespace ghosts_detail {
+
+GhostPaths::GhostPaths(const Lens& lens, const ScenePoint& light, const GhostOptions& options) : entrance(lens, light) {
+  const auto check = [&](bool valid, const char* name, double value, const char* rule) {
+    if (!valid) throw Error(std::string("ghosts: ") + name + " = " + to_text(value) + "; must be " + rule);
+  };
+  check(options.film_reflectance >= 0 && options.film_reflectance <= 1, "film_reflectance", options.film_reflectance,
+        "0 to 1");
+  check(options.tolerance > 0, "tolerance", options.tolerance, "positive");
+  check(options.threads >= 1, "threads", options.threads, "at least 1");
+
+  const std::size_t count = lens.surface_count();
+  const Surfaces surfaces(lens, options.wavelength, options.film_reflectance);
+  std::vector<double> reflectances(count + 1);
+  for (std::size_t i = 0; i <= count; ++i) reflectances[i] = surfaces.reflectance(i);
+  std::vector<std::size_t> order;
+  // A film that reflects nothing, and a surface without a change of the index, form no pairs at any angle.
+  for (std::size_t i = 0; i <= count; ++i) {
+    if (reflectances[i] > 0) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return reflectances[i]; });
+  const auto products = [&](std::size_t kept) {
+    double sum = 0, squares = 0;
+    for (std::size_t k = 0; k < kept; ++k) {
+      sum += reflectances[order[k]], squares += reflectances[order[k]] * reflectances[order[k]];
+    }
+    return (sum * sum - squares) / 2;
+  };
+  std::size_t kept = order.size();
+  while (kept > 1 && kept * (kept - 1) / 2 > options.max_pairs) --kept;
+  left_out = order.size() * (order.size() - std::min<std::size_t>(order.size(), 1)) / 2 -
+             (kept > 0 ? kept * (kept - 1) / 2 : 0);
+  left_out_energy = left_out > 0 ? products(order.size()) - products(kept) : 0;
+  order.resize(kept);
+  std::ranges::sort(order);
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) pairs.push_back({order[a], order[b]});
+  }
+  entering = LightPath(lens, {{0, false}}).entering(entrance, entrance.box(), 256, options.wavelength);
+  if (!(entering > 0)) {
+    throw Error(lens.name() + ": light: no light enters surface 0; must be in front of the lens");
+  }
+}
+
+LightPath path_of(const Lens& lens, const GhostPaths::Pair& pair) {
+  std::vector<lens_detail::Passage> path;
+  for (std::size_t i = 0; i < pair.second; ++i) path.push_back({i, false});
+  path.push_back({pair.second, true});
+  for (std::size_t i = pair.second; i-- > pair.first + 1;) path.push_back({i, false});
+  path.push_back({pair.first, true});
+  for (std::size_t i = pair.first + 1; i < lens.surface_count(); ++i) path.push_back({i, false});
+  return LightPath(lens, std::move(path));
+}
+
+namespace {
+
+/// Most cells along a side of the region of a pair.
+constexpr std::size_t most_cells = 256;
+
+/// Moments, peak and caustic of a footprint.
+GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double entering) {
+  GhostPair result{.first = of.first, .second = of.second, .energy = light.energy / entering};
+  if (!(light.energy > 0)) return result;
+  Vec2<double> mean{0, 0}, low{1e300, 1e300}, high{-1e300, -1e300};
+  double square = 0;
+  bool mirrored = false, upright = false;
+  // The mean over a polygon, from triangles.
+  for (const Deposit& deposit : light.deposits) {
+    Vec2<double> sum{0, 0};
+    double squares = 0;
+    for (int k = 0; k < deposit.count; ++k) {
+      const Vec2<double>& p = deposit.corners[static_cast<std::size_t>(k)];
+      sum += p, squares += glm::dot(p, p);
+      low = glm::min(low, p), high = glm::max(high, p);
+    }
+    sum /= static_cast<double>(deposit.count), squares /= static_cast<double>(deposit.count);
+    // A parallelogram has a third of the variance of its corners.
+    const double own = glm::dot(sum, sum);
+    mean += sum * deposit.energy, square += (own + (squares - own) / 3) * deposit.energy;
+    (deposit.mirrored ? mirrored : upright) |= deposit.energy > 0;
+  }
+  mean /= light.energy;
+  result.centre = {mean.x, mean.y};
+  result.rms_radius_mm = std::sqrt(std::max(square / light.energy - glm::dot(mean, mean), 0.0));
+  result.caustic = mirrored && upright;
+
+  constexpr std::size_t side = 64;
+  const double width = std::max({high.x - low.x, high.y - low.y, side * 1e-3}), scale = side / width;
+  const Vec2<double> corner = (low + high - Vec2<double>(width, width)) / 2.0;
+  AreaRaster raster(side, side);
+  for (const Deposit& deposit : light.deposits) {
+    std::array<Vec2<double>, 6> polygon;
+    for (std::size_t k = 0; k < 6; ++k) polygon[k] = (deposit.corners[k] - corner) * scale;
+    raster.add({polygon.data(), static_cast<std::size_t>(deposit.count)}, deposit.energy, 0, side);
+  }
+  std::array<double, side> row;
+  for (std::size_t k = 0; k < side; ++k) {
+    raster.read(k, row);
+    result.peak_per_mm2 = std::max(result.peak_per_mm2, *std::ranges::max_element(row) * scale * scale / entering);
+  }
+  return result;
+}
+
+/// Number of cells at which edges of deposits are wrong by at most 0.1 pixels, from a coarse footprint.
+std::size_t cells_for(const Footprint& coarse, std::size_t cells, double pixel_mm) {
+  constexpr double tolerance = 0.1;
+  Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
+  for (const Deposit& deposit : coarse.deposits) {
+    for (int k = 0; k < deposit.count; ++k) {
+      low = glm::min(low, deposit.corners[static_cast<std::size_t>(k)]);
+      high = glm::max(high, deposit.corners[static_cast<std::size_t>(k)]);
+    }
+  }
+  // A circle of radius R that is drawn with n chords along its diameter is wrong by R / (2 n^2).
+  const double radius = glm::length(high - low) / 2 / pixel_mm;
+  const double by_edge = std::sqrt(radius / (2 * tolerance));
+  // The mismatch of adjacent cells falls with the third power.
+  const double by_mismatch = static_cast<double>(cells) * std::cbrt(coarse.mismatch_mm / (tolerance * pixel_mm));
+  const double wanted = std::max({by_edge, by_mismatch, static_cast<double>(cells)});
+  return wanted < static_cast<double>(most_cells) ? static_cast<std::size_t>(wanted) : most_cells;
+}
+
+}  // namespace
+}  // namespace ghosts_detail
+
+using namespace ghosts_detail;
+
+Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const GhostOptions& options) {
+  const GhostPaths paths(lens, light, options);
+  const Surfaces surfaces(lens, options.wavelength, options.film_reflectance);
+  Film film;
+  film.z_mm = lens.film_z();
+  Ghosts result{std::vector<GhostPair>(paths.pairs.size()), paths.entering, paths.left_out, paths.left_out_energy};
+  parallel_for(paths.pairs.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
+    const LightPath path = path_of(lens, paths.pairs[k]);
+    const Box box = path.region(paths.entrance, options.wavelength);
+    const auto at = [&](std::size_t cells) {
+      return path.footprint(paths.entrance, box, cells, surfaces, options.wavelength, film);
+    };
+    Footprint coarse = at(16);
+    double error = 0;
+    for (std::size_t cells = 32; cells <= most_cells; cells *= 2) {
+      Footprint fine = at(cells);
+      // The error falls with the square of the spacing, or with the spacing where rays are totally reflected.
+      error = fine.energy > 0 ? std::abs(fine.energy - coarse.energy) / fine.energy : 0;
+      coarse = std::move(fine);
+      if (error < options.tolerance) break;
+    }
+    result.pairs[k] = measured(paths.pairs[k], coarse, paths.entering);
+    result.pairs[k].error = error + coarse.weight_error;
+  });
+  std::erase_if(result.pairs, [](const GhostPair& pair) { return !(pair.energy > 0); });
+  std::ranges::stable_sort(result.pairs, std::ranges::greater(), &GhostPair::energy);
+  return result;
+}
+
+void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std::span<const Wavelength> wavelengths,
+                std::span<float> pictures, const GhostOptions& options) {
+  const Film at = [&] {
+    Film result = film;
+    if (!result.z_mm) result.z_mm = lens.film_z();
+    return result;
+  }();
+  if (!(at.columns > 0 && at.rows > 0 && at.width_mm > 0 && at.height_mm > 0)) {
+    throw Error("add_ghosts: film: columns = " + std::to_string(at.columns) + ", rows = " + std::to_string(at.rows) +
+                ", width_mm = " + to_text(at.width_mm) + ", height_mm = " + to_text(at.height_mm) +
+                "; must be positive");
+  }
+  const auto columns = static_cast<std::size_t>(at.columns), rows = static_cast<std::size_t>(at.rows);
+  if (pictures.size() != columns * rows * wavelengths.size()) {
+    throw Error("add_ghosts: pictures: size = " + std::to_string(pictures.size()) + "; must be " +
+                std::to_string(columns * rows * wavelengths.size()) + ", one number for each wavelength and pixel");
+  }
+  const double pixel_mm = std::min(at.width_mm / at.columns, at.height_mm / at.rows);
+  for (std::size_t w = 0; w < wavelengths.size(); ++w) {
+    GhostOptions own = options;
+    own.wavelength = wavelengths[w];
+    const GhostPaths paths(lens, light, own);
+    const Surfaces surfaces(lens, own.wavelength, own.film_reflectance);
+    AreaRaster raster(columns, rows);
+    // Groups limit the memory; the order of deposits does not depend on threads.
+    constexpr std::size_t group = 64, band = 16;
+    for (std::size_t begin = 0; begin < paths.pairs.size(); begin += group) {
+      const std::size_t size = std::min(group, paths.pairs.size() - begin);
+      std::vector<Footprint> footprints(size);
+      std::vector<std::vector<std::vector<std::uint32_t>>> lists(size);  // deposits by band of rows
+      parallel_for(size, 1, options.threads, [&](std::size_t k, std::size_t) {
+        const LightPath path = path_of(lens, paths.pairs[begin + k]);
+        const Box box = path.region(paths.entrance, own.wavelength);
+        const auto with = [&](std::size_t cells) {
+          return path.footprint(paths.entrance, box, cells, surfaces, own.wavelength, at);
+        };
+        constexpr std::size_t coarse = 32;
+        footprints[k] = with(coarse);
+        if (const std::size_t cells = cells_for(footprints[k], coarse, pixel_mm); cells > coarse) {
+          footprints[k] = with(cells);
+        }
+        lists[k].resize((rows + band - 1) / band);
+        for (std::uint32_t m = 0; m < footprints[k].deposits.size(); ++m) {
+          Deposit& deposit = footprints[k].deposits[m];
+          double low = std::numeric_limits<double>::infinity(), high = -low;
+          for (Vec2<double>& corner : std::span(deposit.corners).first(static_cast<std::size_t>(deposit.count))) {
+            corner = at.raster({corner.x, corner.y});
+            low = std::min(low, corner.y), high = std::max(high, corner.y);
+          }
+          // A narrow deposit is widened by less than a pixel.
+          const double first = std::max(low - 1, 0.0), last = std::min(high + 1, static_cast<double>(rows) - 0.5);
+          if (!(first <= last)) continue;
+          for (std::size_t b = static_cast<std::size_t>(first) / band; b <= static_cast<std::size_t>(last) / band;
+               ++b) {
+            lists[k][b].push_back(m);
+          }
+        }
+      });
+      parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = 0; k < size; ++k) {
+          for (const std::uint32_t m : lists[k][first / band]) {
+            const Deposit& deposit = footprints[k].deposits[m];
+            raster.add({deposit.corners.data(), static_cast<std::size_t>(deposit.count)}, deposit.energy, first, last);
+          }
+        }
+      });
+    }
+    const double per_pixel = static_cast<double>(columns * rows) / at.area_mm2();
+    parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {
+      std::vector<double> energies(columns);
+      for (std::size_t row = first; row < last; ++row) {
+        raster.read(row, energies);
+        float* const to = pictures.data() + (w * rows + row) * columns;
+        for (std::size_t k = 0; k < columns; ++k) to[k] += static_cast<float>(std::max(energies[k], 0.0) * per_pixel);
+      }
+    });
+  }
+}
+
+}  // namespace petzval

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laws of ghosts: paraxial images, symmetry, scale, conservation of energy in pictures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../expect_error.hpp"
+#include "petzval/ghosts/ghosts.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "plain_optics.hpp"
+
+namespace petzval {
+namespace ghost_laws_test {
+
+constexpr std::array primary{Wavelength{}};
+
+Prescription plate(double index = 1.5) {
+  Prescription p;
+  p.name = "plate";
+  p.surfaces = {{.thickness = 1, .semi_diameter = 5, .stop = true},
+                {.thickness = 5, .medium = {.nd = index}, .semi_diameter = 40},
+                {.thickness = 50, .semi_diameter = 40}};
+  return p;
+}
+
+/// The singlet of data/lenses behind a stop.
+Lens stopped_singlet(double semi_diameter) {
+  Prescription p = petzval::testing::data_prescription("singlet_50mm_biconvex");
+  p.surfaces[0].stop = false;
+  p.surfaces.insert(p.surfaces.begin(), SurfaceRow{.semi_diameter = semi_diameter, .stop = true});
+  p.surfaces[0].thickness = 1;
+  return compile(p);
+}
+
+/// Direction towards a light at infinity.
+ScenePoint far_light(double degrees, double azimuth_degrees = 0) {
+  const double sine = std::sin(radians(degrees)), azimuth = radians(azimuth_degrees);
+  return {{sine * std::sin(azimuth), sine * std::cos(azimuth), -std::cos(radians(degrees))}, true};
+}
+
+double total(const Ghosts& ghosts) {
+  double sum = 0;
+  for (const GhostPair& pair : ghosts.pairs) sum += pair.energy;
+  return sum;
+}
+
+std::vector<float> picture(const Lens& lens, const ScenePoint& light, const Film& film, GhostOptions options = {}) {
+  std::vector<float> result(static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows));
+  add_ghosts(lens, light, film, primary, result, options);
+  return result;
+}
+
+double sum_of(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+TEST(GhostLaws, GhostOfAPlateIsTheDirectLightTwiceDelayed) {
+  const Lens lens = compile(plate());
+  for (const double degrees : {0.0, 20.0, 50.0}) {
+    const Ghosts ghosts = ghost_pairs(lens, far_light(degrees));
+    ASSERT_EQ(ghosts.pairs.size(), 1U);
+    const GhostPair& pair = ghosts.pairs[0];
+    const double sine = std::sin(radians(degrees)), cosine = std::cos(radians(degrees));
+    const double inside = std::sqrt(1 - sine * sine / 2.25);
+    const testing::Bare in(1, 1.5, cosine), out(1.5, 1, inside);
+    const double power = (in.ts * out.s * out.s * out.ts + in.tp * out.p * out.p * out.tp) / 2;
+    EXPECT_NEAR(ghosts.entering_mm2, 25 * std::numbers::pi * cosine, 2e-4 * 25 * std::numbers::pi);
+    EXPECT_NEAR(pair.energy, power, 1e-3 * power) << degrees;
+    EXPECT_LT(pair.error, 1e-3);
+    // Three passages of the plate and 51 mm of air; the beam falls from +y to -y.
+    EXPECT_NEAR(pair.centre.y, -(3 * 5 * sine / 1.5 / inside + 51 * sine / cosine), 2e-3);
+    EXPECT_NEAR(pair.centre.x, 0, 1e-9);
+    EXPECT_NEAR(pair.rms_radius_mm, 5 / std::numbers::sqrt2, 2e-3);
+    EXPECT_NEAR(pair.peak_per_mm2, power / (25 * std::numbers::pi), 2e-3 * power / 78);
+    EXPECT_FALSE(pair.caustic);
+  }
+}
+
+TEST(GhostLaws, UniformSheetIsFlatAndHasTheIrradianceOfThePair) {
+  const Lens lens = compile(plate());
+  const Film film{.width_mm = 12, .height_mm = 12, .columns = 300, .rows = 300};
+  const std::vector<float> values = picture(lens, far_light(0), film);
+  const double expected = 0.96 * 0.04 * 0.04 * 0.96;
+  for (int row = 0; row < 300; ++row) {
+    for (int column = 0; column < 300; ++column) {
+      const FilmPoint at = film.point(column + 0.5, row + 0.5);
+      const double r = std::hypot(at.x, at.y), value = values[static_cast<std::size_t>(300 * row + column)];
+      if (std::abs(r - 5) < 0.04) continue;
+      ASSERT_NEAR(value, r < 5 ? expected : 0, 1e-5 * expected) << column << ", " << row;
+    }
+  }
+}
+
+// The density changes slowly from the middle to the edge; the grid of rays must not show.
+TEST(GhostLaws, CurvedSheetHasNoRipple) {
+  const Film film{.width_mm = 24, .height_mm = 24, .columns = 600, .rows = 600, .shift_y_mm = -2};
+  const std::vector<float> values = picture(stopped_singlet(2), far_light(6), film);
+  const float peak = *std::ranges::max_element(values);
+  int inner = 0;
+  for (std::size_t i = 4 * 600; i < values.size() - 4 * 600; ++i) {
+    if (std::min({values[i - 4], values[i + 4], values[i - 2400], values[i + 2400]}) < 0.2F * peak) continue;
+    ++inner;
+    ASSERT_NEAR(values[i], (values[i - 1] + values[i + 1]) / 2, 0.005 * values[i]) << i;
+    ASSERT_NEAR(values[i], (values[i - 600] + values[i + 600]) / 2, 0.005 * values[i]) << i;
+  }
+  EXPECT_GT(inner, 10'000);
+}
+
+using Matrix = std::array<double, 4>;  // acts on the height and the slope per length travelled
+
+Matrix after(const Matrix& b, const Matrix& a) {
+  return {b[0] * a[0] + b[1] * a[2], b[0] * a[1] + b[1] * a[3], b[2] * a[0] + b[3] * a[2], b[2] * a[1] + b[3] * a[3]};
+}
+Matrix travel(double distance) { return {1, distance, 0, 1}; }
+Matrix refraction(double in, double out, double curvature) { return {1, 0, (in - out) * curvature / out, in / out}; }
+/// @param curvature positive if the centre lies in front of the mirror, on the side of the light
+Matrix mirror(double curvature) { return {1, 0, -2 * curvature, 1}; }
+
+TEST(GhostLaws, GhostOfASingletIsParaxial) {
+  const Lens lens = stopped_singlet(0.2);
+  const testing::PlainLens plain(lens);
+  const auto &front = plain.surfaces[1], &back = plain.surfaces[2];
+  const double n = front.behind, d = back.z - front.z;
+  Matrix m = after(refraction(1, n, front.curvature), travel(1));
+  m = after(travel(d), m);
+  m = after(travel(d), after(mirror(-back.curvature), m));  // light towards +z: the centre of the back is at -z
+  m = after(travel(d), after(mirror(front.curvature), m));
+  m = after(travel(plain.film_z - back.z), after(refraction(n, 1, back.curvature), m));
+  const Ghosts ghosts = ghost_pairs(lens, far_light(1));
+  ASSERT_EQ(ghosts.pairs.size(), 1U);
+  EXPECT_NEAR(ghosts.pairs[0].centre.y, -m[1] * std::tan(radians(1)), 2e-3 * std::abs(m[1]) * radians(1));
+  EXPECT_NEAR(ghosts.pairs[0].rms_radius_mm, std::abs(m[0]) * 0.2 / std::numbers::sqrt2, 2e-3 * std::abs(m[0]) * 0.2);
+}
+
+TEST(GhostLaws, ScaledLensHasScaledGhosts) {
+  const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const Ghosts one = ghost_pairs(compile(p), far_light(7)), two = ghost_pairs(compile(scale(p, 2)), far_light(7));
+  ASSERT_EQ(one.pairs.size(), two.pairs.size());
+  EXPECT_NEAR(two.entering_mm2, 4 * one.entering_mm2, 1e-9 * one.entering_mm2);
+  for (std::size_t k = 0; k < one.pairs.size(); ++k) {
+    const GhostPair &a = one.pairs[k], &b = two.pairs[k];
+    ASSERT_EQ(a.first, b.first);
+    EXPECT_NEAR(b.energy, a.energy, 1e-9 * a.energy);
+    EXPECT_NEAR(b.centre.y, 2 * a.centre.y, 1e-6);
+    EXPECT_NEAR(b.rms_radius_mm, 2 * a.rms_radius_mm, 1e-6);
+  }
+}
+
+TEST(GhostLaws, TurnedLightHasTurnedGhosts) {
+  const Lens lens = petzval::testing::data_lens("double_gauss_100mm_f2.0");
+  const Ghosts one = ghost_pairs(lens, far_light(7)), turned = ghost_pairs(lens, far_light(7, 90));
+  const Ghosts slanted = ghost_pairs(lens, far_light(7, 33));
+  ASSERT_EQ(one.pairs.size(), turned.pairs.size());
+  EXPECT_NEAR(total(slanted), total(one), 1e-3 * total(one));
+  for (std::size_t k = 0; k < 10; ++k) {
+    const GhostPair &a = one.pairs[k], &b = turned.pairs[k], &c = slanted.pairs[k];
+    EXPECT_NEAR(b.energy, a.energy, 1e-9);
+    EXPECT_NEAR(b.centre.x, a.centre.y, 1e-6);
+    EXPECT_NEAR(c.centre.x, a.centre.y * std::sin(radians(33)), 0.01);
+    EXPECT_NEAR(c.centre.y, a.centre.y * std::cos(radians(33)), 0.01);
+  }
+}
+
+TEST(GhostLaws, NearLightApproachesALightAtInfinity) {
+  const Lens lens = petzval::testing::data_lens("double_gauss_100mm_f2.0");
+  const Ghosts far = ghost_pairs(lens, far_light(5));
+  const Vec3<double> towards = far_light(5).position;
+  double last = std::numeric_limits<double>::infinity();
+  for (const double distance : {1e4, 1e6}) {
+    const Ghosts near = ghost_pairs(lens, {towards * distance, false});
+    const double difference = std::abs(total(near) - total(far));
+    EXPECT_LT(difference, last / 10);
+    last = difference;
+  }
+  EXPECT_LT(last, 1e-3 * total(far));
+}
+
+TEST(GhostLaws, PictureHoldsTheEnergyOfCaustics) {
+  const Lens singlet = petzval::testing::data_lens("singlet_50mm_biconvex");
+  const Film film{.width_mm = 400, .height_mm = 400, .columns = 400, .rows = 400};
+  const double pixel = film.area_mm2() / (400.0 * 400);
+  bool caustic = false;
+  // From in front of the focus of the ghost to behind it.
+  const double last_z = singlet.surfaces().back().vertex_z;
+  for (const double z : {1.0, 3.0, 5.0, 7.0, 9.0, 12.0}) {
+    const Lens lens = with_film(singlet, last_z + z);
+    const Ghosts ghosts = ghost_pairs(lens, far_light(3));
+    caustic = caustic || ghosts.pairs.at(0).caustic;
+    const double expected = total(ghosts) * ghosts.entering_mm2;
+    EXPECT_NEAR(sum_of(picture(lens, far_light(3), film)) * pixel, expected, 0.005 * expected) << z;
+  }
+  EXPECT_TRUE(caustic);
+}
+
+TEST(GhostLaws, PicturesHoldTheEnergyOfAllPairs) {
+  const Lens lens = with_iris(petzval::testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 6});
+  const Film film{.width_mm = 4000, .height_mm = 4000, .columns = 100, .rows = 100, .tilt_rad = 0.05};
+  const Ghosts ghosts = ghost_pairs(lens, far_light(5));
+  const double expected = total(ghosts) * ghosts.entering_mm2;
+  const std::vector<float> values = picture(lens, far_light(5), film);
+  EXPECT_NEAR(sum_of(values) * 1600, expected, 0.01 * expected);
+  EXPECT_EQ(values, picture(lens, far_light(5), film, {.threads = 3}));
+  std::vector<float> twice = values;
+  add_ghosts(lens, far_light(5), film, primary, twice);
+  EXPECT_NEAR(sum_of(twice), 2 * sum_of(values), 1e-5 * sum_of(values));
+}
+
+// Blades of a stop between the reflecting surfaces clip three times, of a stop behind them once.
+TEST(GhostLaws, IrisClipsAtEveryPassage) {
+  const Lens round = petzval::testing::data_lens("double_gauss_100mm_f2.0");
+  const Lens bladed = with_iris(round, {.blades = 3});
+  const Ghosts all = ghost_pairs(round, far_light(0)), clipped = ghost_pairs(bladed, far_light(0));
+  EXPECT_LT(total(clipped), total(all));
+  for (const GhostPair& pair : clipped.pairs) {
+    const auto same = std::ranges::find_if(
+        all.pairs, [&](const GhostPair& own) { return own.first == pair.first && own.second == pair.second; });
+    ASSERT_NE(same, all.pairs.end());
+    EXPECT_LE(pair.energy, same->energy * 1.002);
+  }
+}
+
+TEST(GhostLaws, LimitedPairsAreCounted) {
+  const Lens lens = petzval::testing::data_lens("double_gauss_100mm_f2.0");
+  const Ghosts all = ghost_pairs(lens, far_light(0)), some = ghost_pairs(lens, far_light(0), {.max_pairs = 10});
+  EXPECT_EQ(all.left_out, 0U);
+  EXPECT_EQ(some.left_out, all.left_out + 10 * 9 / 2 - 10);
+  EXPECT_GT(some.left_out_energy, 0);
+  EXPECT_LE(total(some), total(all));
+  EXPECT_LE(total(all), total(some) + some.left_out_energy * 1.5);
+}
+
+TEST(GhostLaws, ThreadsDoNotMatter) {
+  const Lens lens = petzval::testing::data_lens("double_gauss_100mm_f2.0");
+  const Ghosts one = ghost_pairs(lens, far_light(9)), four = ghost_pairs(lens, far_light(9), {.threads = 4});
+  ASSERT_EQ(one.pairs.size(), four.pairs.size());
+  for (std::size_t k = 0; k < one.pairs.size(); ++k) {
+    EXPECT_EQ(one.pairs[k].energy, four.pairs[k].energy);
+    EXPECT_EQ(one.pairs[k].peak_per_mm2, four.pairs[k].peak_per_mm2);
+  }
+}
+
+TEST(GhostLaws, RefusesBadInput) {
+  const Lens lens = compile(plate());
+  const auto refused = [&](const ScenePoint& light, std::vector<petzval::testing::Token> tokens,
+                           const GhostOptions& options = {}) {
+    petzval::testing::expect_error([&] { ghost_pairs(lens, light, options); }, tokens);
+  };
+  refused({{0, 0, 1}, true}, {"light"});                                   // behind the lens
+  refused({{0, 0, lens.film_z()}, false}, {"light", "z", lens.film_z()});  // on the film
+  refused({{0, 0, 2.5}, false}, {"light", "z", 2.5});                      // inside the glass
+  refused({{0, 0, 0}, false}, {"light", "position"});                      // on the front vertex
+  refused({{0, 0, std::numeric_limits<double>::infinity()}, false}, {"light", "position"});
+  refused({{0, 0, -0.1}, false}, {"light", "distance", 0.1});
+  refused(far_light(0), {"film_reflectance", 1.5}, {.film_reflectance = 1.5});
+  refused(far_light(0), {"threads", 0}, {.threads = 0});
+  refused(far_light(0), {"tolerance", 0}, {.tolerance = 0});
+  std::vector<float> values(4);
+  const auto add = [&](const Film& film) {
+    return [&, film] { add_ghosts(lens, far_light(0), film, primary, values); };
+  };
+  petzval::testing::expect_error(add({.width_mm = 0, .columns = 2, .rows = 2}), {"film", "width_mm", 0});
+  petzval::testing::expect_error(add({.columns = 2, .rows = 3}), {"pictures", 4, 6});
+  Prescription open = plate();
+  open.surfaces[0].semi_diameter = std::numeric_limits<double>::infinity();
+  petzval::testing::expect_error([&] { ghost_pairs(compile(open), far_light(0)); }, {"surface 0", "semi_diameter"});
+}
+
+}  // namespace ghost_laws_test
+}  // namespace petzval
