@@ -88,7 +88,10 @@ class LayoutFigure {
   std::vector<double> heights_needed() const {
     std::vector<double> result(lens_.surface_count(), 0.0);
     for (const RayPath& ray : rays_) {
-      for (std::size_t i = 0; i < ray.hits.size(); ++i) result[i] = std::max(result[i], std::abs(ray.hits[i].height));
+      for (std::size_t i = 0; i < ray.hits.size(); ++i) {
+        double& height = result[ray.surfaces[i]];
+        height = std::max(height, std::abs(ray.hits[i].height));
+      }
     }
     return result;
   }

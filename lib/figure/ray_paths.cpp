@@ -78,11 +78,12 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
     for (const double height : fan.heights(count)) {
       const AimedRay aimed = fan.at(height);
       if (!aimed) continue;
-      RayPath path{field, height, {}, seen(aimed.ray.direction), {}, RayFate::transmitted};
+      RayPath path{field, height, {}, {}, seen(aimed.ray.direction), {}, RayFate::transmitted};
       const auto end = kernel::trace(
           kernel::view<double>(lens), kernel::to_kernel(aimed.ray.origin), kernel::to_kernel(aimed.ray.direction),
-          {.wavelength = wavelength},
-          [&](int, const kernel::Vec<double>& hit, const kernel::Vec<double>&) { path.hits.push_back(seen(hit)); });
+          {.wavelength = wavelength}, [&](int surface, const kernel::Vec<double>& hit, const kernel::Vec<double>&) {
+            path.hits.push_back(seen(hit)), path.surfaces.push_back(static_cast<std::size_t>(surface));
+          });
       path.behind = seen(end.direction);
       path.fate = end.fate;
       const bool misses_lens = end.fate != RayFate::transmitted && path.hits.size() < 2;

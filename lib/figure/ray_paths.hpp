@@ -14,10 +14,11 @@ namespace petzval::figure_detail {
 
 /// The path of one ray through a lens in a section.
 struct RayPath {
-  std::size_t field = 0;        ///< index of the field
-  double stop_height = 0;       ///< relative height in the stop: 0 at the centre, 1 at the rim
-  SectionLine hits;             ///< on the surfaces in the order of travel, up to the surface that ends the ray
-  SectionPoint before, behind;  ///< directions in object space and after the last hit
+  std::size_t field = 0;              ///< index of the field
+  double stop_height = 0;             ///< relative height in the stop: 0 at the centre, 1 at the rim
+  SectionLine hits;                   ///< on the surfaces in the order of travel, up to the surface that ends the ray
+  std::vector<std::size_t> surfaces;  ///< of the hits
+  SectionPoint before, behind;        ///< directions in object space and after the last hit
   RayFate fate = RayFate::transmitted;
 };
 
