@@ -3,16 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "figure_elements.hpp"
+#include "lens/path_lens.hpp"
 #include "lens_section.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "ray_paths.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -40,15 +47,23 @@ struct Box {
 
 class LayoutFigure {
  public:
+  /// @param rays   paths of the fields
+  /// @param names  names of the fields
+  /// @param words  explanation of the rays
+  /// @param longest_film  limit of the film's length, relative to the height of the lens
   LayoutFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
-               std::size_t rays, int first_surface_number)
+               std::vector<RayPath> rays, std::vector<std::string> names, std::string words, double longest_film,
+               int first_surface_number)
       : lens_(lens),
         subject_z_(subject_z),
         fields_(fields_rad),
+        names_(std::move(names)),
+        words_(std::move(words)),
         first_surface_number_(first_surface_number),
         meridian_(section),
         wavelength_(lens.primary_wavelength()),
-        rays_(figure_detail::ray_paths(lens, subject_z, fields_rad, section, rays, wavelength_)),
+        rays_(std::move(rays)),
+        longest_film_(longest_film),
         section_(lens, section, heights_needed(), wavelength_) {
     if (has_pupils(lens)) stop_ = pupils(lens, wavelength_, section);
     measure();
@@ -135,6 +150,7 @@ class LayoutFigure {
       }
       if (nearest) film_half_ = std::max(film_half_, 1.05 * std::abs(on_film(*nearest).height));
     }
+    film_half_ = std::min(film_half_, longest_film_ * body_half_);
     film_half_ = std::max(film_half_, 0.05 * std::max(box_.high, 0.3 * (box_.z_max - box_.z_min)));
     box_.take({lens_.film_z(), film_half_});
     box_.take({lens_.film_z(), -film_half_});
@@ -240,16 +256,13 @@ class LayoutFigure {
       const bool any = std::ranges::any_of(
           rays_, [&](const RayPath& ray) { return ray.field == field && ray.fate == RayFate::transmitted; });
       x = 21 + figure_detail::draw_key(svg, x, y + 26, figure_detail::field_colour(field),
-                                       figure_detail::field_text(fields_[field]) + (any ? "" : " (no rays)"));
+                                       names_[field] + (any ? "" : " (no rays)"));
     }
     svg.text(figure_detail::sheet_margin, y + 50,
              "To scale. " + stop_in_words() + " Upright line: film. Darker glass has a higher index.",
              figure_detail::small_text);
     if (!fields_.empty()) {
-      svg.text(figure_detail::sheet_margin, y + 66,
-               "Rays: the chief ray, the outermost transmitted rays and others between. Thin: vignetted rays through "
-               "the rim or centre of the stop.",
-               figure_detail::small_text);
+      svg.text(figure_detail::sheet_margin, y + 66, words_, figure_detail::small_text);
     }
   }
 
@@ -265,10 +278,13 @@ class LayoutFigure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
+  std::vector<std::string> names_;
+  std::string words_;
   int first_surface_number_;
   Meridian meridian_;
   std::size_t wavelength_;
   std::vector<RayPath> rays_;
+  double longest_film_;
   LensSection section_;
   std::optional<Pupils> stop_;
   Box box_;
@@ -281,6 +297,40 @@ class LayoutFigure {
   double scale_ = 1, left_ = 0;
 };
 
+/// The rays of a light that a pair of surfaces sends to the film: the outermost ones and one between.
+std::vector<RayPath> ghost_rays(const Lens& lens, const ScenePoint& light, Meridian section, const GhostPair& pair,
+                                std::size_t field) {
+  const std::vector<lens_detail::Passage> passages = lens_detail::path_of_pair(lens, pair.first, pair.second);
+  const Lens path = lens_detail::along(lens, passages);
+  const auto seen = [section](const auto& v) { return SectionPoint{v.z, section == Meridian::y ? v.y : v.x}; };
+  const LensSurface& front = lens.surfaces().front();
+  const Vec3<double> vertex{0, 0, front.vertex_z},
+      to_light = light.position - (light.at_infinity ? Vec3<double>{} : vertex);
+  const double distance = glm::length(to_light);
+  const Vec3<double> direction = -to_light / distance, across = section == Meridian::y
+                                                                    ? Vec3<double>{0, direction.z, -direction.y}
+                                                                    : Vec3<double>{direction.z, 0, -direction.x};
+  constexpr int steps = 500;
+  std::vector<RayPath> passing;
+  for (int k = -steps; k <= steps; ++k) {
+    const double height = static_cast<double>(k) / steps;
+    const Vec3<double> target = vertex + across * (height * front.semi_diameter);
+    const Vec3<double> origin = light.at_infinity ? target - direction * (4 * front.semi_diameter) : light.position;
+    const Vec3<double> towards = light.at_infinity ? direction : glm::normalize(target - origin);
+    RayPath ray{field, height, {}, {}, seen(towards), {}, RayFate::transmitted};
+    const auto end = kernel::trace(kernel::view<double>(path), kernel::to_kernel(origin), kernel::to_kernel(towards),
+                                   {.wavelength = lens.primary_wavelength()},
+                                   [&](int surface, const kernel::Vec<double>& hit, const kernel::Vec<double>&) {
+                                     ray.hits.push_back(seen(hit));
+                                     ray.surfaces.push_back(passages[static_cast<std::size_t>(surface)].surface);
+                                   });
+    ray.behind = seen(end.direction);
+    if (end.fate == RayFate::transmitted) passing.push_back(std::move(ray));
+  }
+  if (passing.size() < 4) return passing;
+  return {passing.front(), passing[passing.size() / 2], passing.back()};
+}
+
 }  // namespace
 
 std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
@@ -288,7 +338,35 @@ std::string layout_figure(const Lens& lens, double subject_z, std::span<const do
   if (rays < 3 || rays > 7) {
     throw Error("layout_figure: rays = " + std::to_string(rays) + "; must be 3 to 7");
   }
-  return LayoutFigure(lens, subject_z, fields_rad, section, rays, first_surface_number).draw();
+  std::vector<std::string> names;
+  for (const double field : fields_rad) names.push_back(figure_detail::field_text(field));
+  return LayoutFigure(lens, subject_z, fields_rad, section,
+                      figure_detail::ray_paths(lens, subject_z, fields_rad, section, rays, lens.primary_wavelength()),
+                      std::move(names),
+                      "Rays: the chief ray, the outermost transmitted rays and others between. Thin: vignetted rays "
+                      "through the rim or centre of the stop.",
+                      std::numeric_limits<double>::infinity(), first_surface_number)
+      .draw();
+}
+
+std::string ghost_figure(const Lens& lens, double subject_z, double field_rad, std::span<const GhostPair> pairs,
+                         Meridian section, int first_surface_number) {
+  const ScenePoint light = scene_point(lens, {field_rad, subject_z, section == Meridian::y ? 0 : std::numbers::pi / 2});
+  std::vector<RayPath> rays;
+  std::vector<std::string> names;
+  for (const GhostPair& pair : pairs) {
+    std::ranges::move(ghost_rays(lens, light, section, pair, names.size()), std::back_inserter(rays));
+    const auto surface = [&](std::size_t i) {
+      return i == lens.surface_count() ? "film" : std::to_string(static_cast<int>(i) + first_surface_number);
+    };
+    names.push_back(surface(pair.second) + " and " + surface(pair.first) + ": " + svg_number(100 * pair.energy) + " %");
+  }
+  const std::vector<double> fields(pairs.size(), field_rad);
+  return LayoutFigure(
+             lens, subject_z, fields, section, std::move(rays), std::move(names),
+             "Rays of a light that two surfaces reflect, and the share of the light that they send to the film.", 1.5,
+             first_surface_number)
+      .draw();
 }
 
 }  // namespace petzval

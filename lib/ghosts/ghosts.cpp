@@ -55,6 +55,16 @@ GhostPaths::GhostPaths(const Lens& lens, const ScenePoint& light, const GhostOpt
   for (std::size_t b = 0; b < order.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) pairs.push_back({order[a], order[b]});
   }
+  for (const auto& [first, second] : options.only) {
+    if (first < second && second <= count) continue;
+    throw Error("ghosts: only = (" + std::to_string(first) + ", " + std::to_string(second) +
+                "); must be two surfaces in order, up to " + std::to_string(count));
+  }
+  if (!options.only.empty()) {
+    std::erase_if(pairs, [&](const Pair& pair) {
+      return std::ranges::find(options.only, std::array{pair.first, pair.second}) == options.only.end();
+    });
+  }
   entering = LightPath(lens, {{0, false}}).entering(entrance, entrance.box(), 256, options.wavelength);
   if (!(entering > 0)) {
     throw Error(lens.name() + ": light: no light enters surface 0; must be in front of the lens");
@@ -62,13 +72,7 @@ GhostPaths::GhostPaths(const Lens& lens, const ScenePoint& light, const GhostOpt
 }
 
 LightPath path_of(const Lens& lens, const GhostPaths::Pair& pair) {
-  std::vector<lens_detail::Passage> path;
-  for (std::size_t i = 0; i < pair.second; ++i) path.push_back({i, false});
-  path.push_back({pair.second, true});
-  for (std::size_t i = pair.second; i-- > pair.first + 1;) path.push_back({i, false});
-  path.push_back({pair.first, true});
-  for (std::size_t i = pair.first + 1; i < lens.surface_count(); ++i) path.push_back({i, false});
-  return LightPath(lens, std::move(path));
+  return LightPath(lens, lens_detail::path_of_pair(lens, pair.first, pair.second));
 }
 
 namespace {

@@ -54,4 +54,14 @@ Lens along(const Lens& lens, std::span<const Passage> path) {
   return Lens::Data::lens(std::move(data));
 }
 
+std::vector<Passage> path_of_pair(const Lens& lens, std::size_t first, std::size_t second) {
+  std::vector<Passage> path;
+  for (std::size_t i = 0; i < second; ++i) path.push_back({i, false});
+  path.push_back({second, true});
+  for (std::size_t i = second; i-- > first + 1;) path.push_back({i, false});
+  path.push_back({first, true});
+  for (std::size_t i = first + 1; i < lens.surface_count(); ++i) path.push_back({i, false});
+  return path;
+}
+
 }  // namespace petzval::lens_detail

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
@@ -24,5 +25,9 @@ struct Passage {
 /// @param path  surfaces from the first surface of the lens on; each lies next to the surface before, in the direction
 ///              of travel
 PETZVAL_API Lens along(const Lens& lens, std::span<const Passage> path);
+
+/// The path to the film with reflections at the surface `second`, then at `first`; second is surface_count() for the
+/// film.
+PETZVAL_API std::vector<Passage> path_of_pair(const Lens& lens, std::size_t first, std::size_t second);
 
 }  // namespace petzval::lens_detail

@@ -15,6 +15,7 @@
 #include "petzval/core/film.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
@@ -41,6 +42,16 @@ namespace petzval {
 PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                       Meridian section = Meridian::y, std::size_t rays = 5,
                                       int first_surface_number = 0);
+
+/// Draws the lens as layout_figure(), with rays of a light that pairs of surfaces send to the film as ghosts.
+///
+/// @param lens, subject_z  as in layout_figure()
+/// @param field_rad  field angle of the light in the section (rad)
+/// @param pairs      of ghost_pairs(); each has a colour. At most 3 rays of each are drawn
+/// @throws Error     under the conditions of scene_point()
+PETZVAL_API std::string ghost_figure(const Lens& lens, double subject_z, double field_rad,
+                                     std::span<const GhostPair> pairs, Meridian section = Meridian::y,
+                                     int first_surface_number = 0);
 
 /// Draws the vignetted pupil of each field at the primary wavelength.
 ///

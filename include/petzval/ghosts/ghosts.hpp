@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -19,6 +20,8 @@ namespace petzval {
 struct GhostOptions {
   Wavelength wavelength = {};   ///< of ghost_pairs() and ghost_audit(); any wavelength that the lens covers
   double film_reflectance = 0;  ///< reflectance of the film, 0 to 1, equal for all angles: the film is a first mirror
+  /// The pairs that are computed, as (GhostPair::first, GhostPair::second); empty: all
+  std::vector<std::array<std::size_t, 2>> only{};
   /// Largest number of pairs. The pairs of the surfaces with the highest reflectances at normal incidence are kept.
   std::size_t max_pairs = 2000;
   /// Target for the relative error of the energy of a pair; reached with at most 256^2 rays.
@@ -89,8 +92,8 @@ PETZVAL_API void add_ghosts(const Lens& lens, const ScenePoint& light, const Fil
                             std::span<const Wavelength> wavelengths, std::span<float> pictures,
                             const GhostOptions& options = {});
 
-/// The fate of the light that enters the first surface within its rim, as fractions. A film that reflects takes the rest
-/// of the light that reaches it.
+/// The fate of the light that enters the first surface within its rim, as fractions. A film that reflects takes the
+/// rest of the light that reaches it.
 struct GhostAudit {
   double image = 0;         ///< taken by the film without a reflection at a refracting surface
   double ghosts = 0;        ///< taken after two reflections, from ghost_pairs()
