@@ -16,6 +16,7 @@ int convert(int argc, char** argv);
 int export_camera(int argc, char** argv);
 int expressive(int argc, char** argv);
 int focus(int argc, char** argv);
+int ghosts(int argc, char** argv);
 int lenses(int argc, char** argv);
 int metadata(int argc, char** argv);
 int models(int argc, char** argv);

@@ -48,6 +48,8 @@ constexpr std::array figure_commands{
     Command{"psf", "images of a point light", "double_gauss_100mm_f1.35 --at 1.5m --focus 1m --out out", &psf},
     Command{"psf-set", "PSFs over field, distance, wavelength and f-number; merge, query",
             "double_gauss_100mm_f2_28deg --fields 0,10 --at 1m,inf --focus 2m --out out", &psf_set},
+    Command{"ghosts", "reflections between surfaces: ghosts of a light",
+            "double_gauss_52mm_f1.8 --light 15,10 --out out", &ghosts},
     Command{"colour", "colours of out-of-focus lights", "double_gauss_100mm_f1.35 --out out", &colour},
     Command{"shapes", "irises, cat's eyes and weights", "--out out", &shapes},
     Command{"expressive", "a first-order lens with scaled aberrations", "double_gauss_100mm_f1.35 --out out",

@@ -22,7 +22,7 @@ constexpr std::string_view tasks = R"(
  distortion barrel pincushion undistort lensdistortion opencv colmap | export metadata report | export LENS --calibration DIR writes distortion models, metadata ST maps.
  tstop tstops transmission transmittance coatings | report metadata render | report LENS --coatings mgf2 prints T-stop and transmittance.
  vignetting vignette falloff illumination cos4 | report camera-rays render | report LENS --out DIR draws the illumination over the field.
- flare lensflare ghost ghosts ghosting | report render | Flare is not modelled. --coatings tells how much light the surfaces reflect.
+ flare lensflare ghost ghosts ghosting reflections veilingglare | ghosts report | ghosts LENS --light 15,10 --out DIR computes the reflections of a light.
  chromatic chromaticaberration fringing fringes color colors ca | colour psf | colour LENS --out DIR draws longitudinal and lateral colour.
  kernel kernels convolution pointspread | psf psf-set | psf-set writes point images over field, distance, wavelength and f-number.
  scheimpflug tiltshift shift swing | tilt render blur | tilt LENS --points FILE makes points sharp; render and blur take --tilt.
