@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -78,7 +80,7 @@ struct Image {
   bool reached = false;
 };
 
-/// Transmittances as a polynomial of the position in the box, in Chebyshev terms up to a total degree.
+/// A polynomial of the position in a box, from -1 to 1, in Chebyshev terms up to a total degree.
 class Fit {
  public:
   Fit(int degree, std::span<const Vec2<double>> positions, std::span<const double> values) : degree_(degree) {
@@ -117,6 +119,88 @@ class Fit {
   int degree_;
   Eigen::VectorXd factors_;
   double error_ = 0;
+};
+
+/// Transmittances of the rays of a box. They vary slowly: a polynomial through some exact rays or, if it does not fit,
+/// cubic interpolation between exact rays on a grid. Rays near edges of the transmittance are
+/// traced one by one.
+class Transmittances {
+ public:
+  /// @param exact exact(at): the transmittance at a position from -1 to 1, or nullopt
+  Transmittances(std::span<const Vec2<double>> positions, std::function<std::optional<double>(Vec2<double>)> exact)
+      : exact_(std::move(exact)) {
+    constexpr double tolerance = 1e-3;
+    for (const int degree : {4, 8}) {
+      const auto samples = static_cast<std::size_t>(3 * (degree + 1) * (degree + 2) / 2);
+      if (positions.size() < 2 * samples) return;
+      std::vector<Vec2<double>> at;
+      std::vector<double> values;
+      for (std::size_t k = 0; k < samples; ++k) {
+        at.push_back(positions[k * (positions.size() - 1) / (samples - 1)]);
+        values.push_back(exact_(at.back()).value_or(0));
+      }
+      fit_.emplace(degree, at, values);
+      if (fit_->error() < tolerance) return;
+      fit_.reset();
+    }
+    if (positions.size() < static_cast<std::size_t>(side * side)) return;
+    nodes_.assign(static_cast<std::size_t>(side * side), unknown);
+    // The error of the interpolation at some of the rays.
+    double sum = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+      const Vec2<double>& at = positions[k * (positions.size() - 1) / 15];
+      const double value = exact_(at).value_or(0);
+      sum += value / 16, grid_error_ += std::abs((*this)(at)-value) / 16;
+    }
+    grid_error_ = sum > 0 ? grid_error_ / sum : 0;
+  }
+
+  /// Error relative to the mean: the largest of a polynomial, the mean of a grid.
+  double error() const noexcept { return fit_ ? fit_->error() : grid_error_; }
+
+  double operator()(const Vec2<double>& at) {
+    if (fit_) return (*fit_)(at);
+    if (nodes_.empty()) return exact_(at).value_or(0);
+    const Vec2<double> q = (at + 1.0) * ((side - 1) / 2.0);
+    const int x = std::clamp(static_cast<int>(q.x), 1, side - 3), y = std::clamp(static_cast<int>(q.y), 1, side - 3);
+    const auto wx = weights(q.x - x), wy = weights(q.y - y);
+    double sum = 0;
+    std::array<double, 4> inner{};
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 4; ++i) {
+        const double value = node(x + i - 1, y + j - 1);
+        if (value == lost) return exact_(at).value_or(0);
+        if (i % 3 != 0 && j % 3 != 0) inner[static_cast<std::size_t>(2 * j + i - 3)] = value;
+        sum += value * wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)];
+      }
+    }
+    // Near total reflection, transmittances have edges.
+    const auto [least, most] = std::ranges::minmax(inner);
+    const double linear =
+        std::lerp(std::lerp(inner[0], inner[1], q.x - x), std::lerp(inner[2], inner[3], q.x - x), q.y - y);
+    const bool smooth = most - least < 0.3 * linear && std::abs(sum - linear) < 0.02 * linear;
+    return smooth ? sum : exact_(at).value_or(0);
+  }
+
+ private:
+  static constexpr int side = 24;
+  static constexpr double unknown = -2, lost = -1;
+
+  /// Lagrange's weights of the nodes -1, 0, 1 and 2.
+  static std::array<double, 4> weights(double t) noexcept {
+    return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+            (t + 1) * t * (t - 1) / 6};
+  }
+  double node(int x, int y) {
+    double& value = nodes_[static_cast<std::size_t>(y * side + x)];
+    if (value == unknown) value = exact_(Vec2<double>(x, y) * (2.0 / (side - 1)) - 1.0).value_or(lost);
+    return value;
+  }
+
+  std::function<std::optional<double>(Vec2<double>)> exact_;
+  std::optional<Fit> fit_;
+  std::vector<double> nodes_;
+  double grid_error_ = 0;
 };
 
 }  // namespace
@@ -246,7 +330,7 @@ double LightPath::entering(const Entrance& entrance, const Box& box, std::size_t
 }
 
 Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::size_t cells, const Surfaces& surfaces,
-                               Wavelength wavelength, const Film& film) const {
+                               Wavelength wavelength, const Film& film, const Box& frame) const {
   Footprint result;
   const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
   if (!(step.x > 0 && step.y > 0)) return result;
@@ -296,31 +380,26 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
     const double sum = image.at.x + image.at.y + image.u.x + image.u.y + image.v.x + image.v.y;
     if (std::isfinite(sum)) images[lit[k]] = image;
   }
-  std::erase_if(lit, [&](std::size_t i) { return !images[i].reached; });
-
-  // Transmittances vary slowly: a polynomial through some exact rays, or all rays if it does not fit.
-  const auto in_box = [&](std::size_t i) { return position(i) * (2.0 / static_cast<double>(cells)) - 1.0; };
-  const auto power = [&](std::size_t i) {
-    const Ray<double> ray = entrance.ray(box.low + step * position(i));
-    return surfaces.power(path_, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction)).value_or(0);
-  };
-  std::optional<Fit> fit;
-  for (const int degree : {4, 8}) {
-    constexpr double tolerance = 1e-3;
-    const std::size_t samples = static_cast<std::size_t>(3 * (degree + 1) * (degree + 2) / 2);
-    if (lit.size() < 2 * samples) break;
-    std::vector<Vec2<double>> at;
-    std::vector<double> values;
-    for (std::size_t k = 0; k < samples; ++k) {
-      const std::size_t i = lit[k * (lit.size() - 1) / (samples - 1)];
-      at.push_back(in_box(i)), values.push_back(power(i));
-    }
-    fit.emplace(degree, at, values);
-    result.weight_error = fit->error();
-    if (fit->error() < tolerance) break;
-    fit.reset();
+  std::erase_if(lit, [&](std::size_t i) {
+    const Image& image = images[i];
+    const Vec2<double> reach = glm::abs(image.u) + glm::abs(image.v), low = image.at - reach, high = image.at + reach;
+    return !image.reached || low.x > frame.high.x || low.y > frame.high.y || high.x < frame.low.x ||
+           high.y < frame.low.y;
+  });
+  if (lit.empty()) return result;
+  result.lit = {box.high, box.low};
+  std::vector<Vec2<double>> in_box(lit.size());
+  for (std::size_t k = 0; k < lit.size(); ++k) {
+    const Vec2<double> at = position(lit[k]);
+    in_box[k] = at * (2.0 / static_cast<double>(cells)) - 1.0;
+    result.lit.low = glm::min(result.lit.low, box.low + step * (at - 1.5));
+    result.lit.high = glm::max(result.lit.high, box.low + step * (at + 1.5));
   }
-  if (!fit) result.weight_error = 0;
+  Transmittances transmittances(in_box, [&](const Vec2<double>& at) {
+    const Ray<double> ray = entrance.ray(box.low + (box.high - box.low) * ((at + 1.0) / 2.0));
+    return surfaces.power(path_, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction));
+  });
+  result.weight_error = transmittances.error();
 
   const auto neighbour = [&](std::size_t i, std::size_t axis, int by) -> const Image* {
     const std::size_t at = axis == 0 ? i % cells : i / cells, stride = axis == 0 ? 1 : cells;
@@ -328,7 +407,8 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
     const Image& image = images[by < 0 ? i - stride : i + stride];
     return image.reached ? &image : nullptr;
   };
-  for (const std::size_t i : lit) {
+  for (std::size_t k = 0; k < lit.size(); ++k) {
+    const std::size_t i = lit[k];
     const Image& image = images[i];
     // Second derivatives, from the derivatives of adjacent rays.
     std::array<Vec2<double>, 2> bend_u{}, bend_v{};
@@ -347,21 +427,23 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
     const Polygon& shape = shapes[i];
     const double sense = cross(image.u, image.v);
     Deposit deposit{.count = shape.count, .mirrored = sense < 0};
+    const auto corners = static_cast<std::size_t>(shape.count);
     bool convex = true;
-    for (int k = 0; k < shape.count; ++k) deposit.corners[k] = at(shape.at[k], 1);
-    for (int k = 0; k < shape.count; ++k) {
-      const auto corner = [&](int m) { return deposit.corners[static_cast<std::size_t>((k + m) % shape.count)]; };
+    for (std::size_t m = 0; m < corners; ++m) deposit.corners[m] = at(shape.at[m], 1);
+    for (std::size_t m = 0; m < corners; ++m) {
+      const auto corner = [&](std::size_t next) { return deposit.corners[(m + next) % corners]; };
       convex = convex && cross(corner(1) - corner(0), corner(2) - corner(1)) * sense > 0;
     }
     // Near a caustic the parallelogram of the tangents stays simple.
-    for (int k = 0; k < shape.count && !convex; ++k) deposit.corners[k] = at(shape.at[k], 0);
+    for (std::size_t m = 0; m < corners && !convex; ++m) deposit.corners[m] = at(shape.at[m], 0);
     if (const Image* next = neighbour(i, 0, 1); next && convex) {
       const Vec2<double> gap = at({0.5, 0.5}, 1) - next->at + next->u * 0.5 - next->v * 0.5 - (mixed * -0.25) -
                                (bend_u[0] + bend_v[1]) * 0.125;
       result.mismatch_mm = std::max(result.mismatch_mm, glm::length(gap));
     }
-    const double transmitted = fit ? (*fit)(in_box(i)) : power(i);
-    deposit.energy = transmitted * shape.area() * step.x * step.y * entrance.flux(box.low + step * position(i));
+    result.cell_mm = std::max({result.cell_mm, glm::length(image.u), glm::length(image.v)});
+    deposit.energy =
+        transmittances(in_box[k]) * shape.area() * step.x * step.y * entrance.flux(box.low + step * position(i));
     result.energy += deposit.energy;
     result.deposits.push_back(deposit);
   }

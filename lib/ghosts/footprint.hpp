@@ -54,9 +54,11 @@ struct Footprint {
   double energy = 0;
   double weight_error = 0;  ///< largest error of interpolated transmittances, relative to their mean
   double mismatch_mm = 0;   ///< largest distance between common edges of adjacent deposits
+  double cell_mm = 0;       ///< longest side of a deposit
+  Box lit;                  ///< the part of the entrance plane from which the deposits come, with one cell of margin
 };
 
-/// A path of light through a lens to the film, with the rims that clip it.
+/// A path of light through a lens to the film, with its rims.
 class LightPath {
  public:
   LightPath(const Lens& lens, std::vector<lens_detail::Passage> path);
@@ -65,8 +67,9 @@ class LightPath {
   Box region(const Entrance& entrance, Wavelength wavelength) const;
   /// Traces cells^2 rays through the middles of the cells of a box. Cells are clipped at the rims.
   /// @param film with its position
+  /// @param frame film points, mm; deposits outside it are left out
   Footprint footprint(const Entrance& entrance, const Box& box, std::size_t cells, const Surfaces& surfaces,
-                      Wavelength wavelength, const Film& film) const;
+                      Wavelength wavelength, const Film& film, const Box& frame) const;
   /// Area of the box whose rays pass the rims, times Entrance::flux().
   double entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const;
 

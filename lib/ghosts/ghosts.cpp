@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
@@ -124,21 +125,14 @@ GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double en
   return result;
 }
 
-/// Number of cells at which edges of deposits are wrong by at most 0.1 pixels, from a coarse footprint.
+/// Number of cells along a side at which the edges of deposits are wrong by at most 0.2 pixels, from a coarse
+/// footprint.
 std::size_t cells_for(const Footprint& coarse, std::size_t cells, double pixel_mm) {
-  constexpr double tolerance = 0.1;
-  Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
-  for (const Deposit& deposit : coarse.deposits) {
-    for (int k = 0; k < deposit.count; ++k) {
-      low = glm::min(low, deposit.corners[static_cast<std::size_t>(k)]);
-      high = glm::max(high, deposit.corners[static_cast<std::size_t>(k)]);
-    }
-  }
-  // A circle of radius R that is drawn with n chords along its diameter is wrong by R / (2 n^2).
-  const double radius = glm::length(high - low) / 2 / pixel_mm;
-  const double by_edge = std::sqrt(radius / (2 * tolerance));
+  const double tolerance_mm = 0.2 * pixel_mm;
+  // A circle that is drawn with chords of length c is wrong by c^2 / (8 radius).
+  const double by_edge = std::sqrt(static_cast<double>(cells) * coarse.cell_mm / (4 * tolerance_mm));
   // The mismatch of adjacent cells falls with the third power.
-  const double by_mismatch = static_cast<double>(cells) * std::cbrt(coarse.mismatch_mm / (tolerance * pixel_mm));
+  const double by_mismatch = static_cast<double>(cells) * std::cbrt(coarse.mismatch_mm / tolerance_mm);
   const double wanted = std::max({by_edge, by_mismatch, static_cast<double>(cells)});
   return wanted < static_cast<double>(most_cells) ? static_cast<std::size_t>(wanted) : most_cells;
 }
@@ -153,12 +147,14 @@ Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const GhostOptions
   const Surfaces surfaces(lens, options.wavelength, options.film_reflectance);
   Film film;
   film.z_mm = lens.film_z();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Box everywhere{{-infinity, -infinity}, {infinity, infinity}};
   Ghosts result{std::vector<GhostPair>(paths.pairs.size()), paths.entering, paths.left_out, paths.left_out_energy};
   parallel_for(paths.pairs.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
     const LightPath path = path_of(lens, paths.pairs[k]);
     const Box box = path.region(paths.entrance, options.wavelength);
     const auto at = [&](std::size_t cells) {
-      return path.footprint(paths.entrance, box, cells, surfaces, options.wavelength, film);
+      return path.footprint(paths.entrance, box, cells, surfaces, options.wavelength, film, everywhere);
     };
     Footprint coarse = at(16);
     double error = 0;
@@ -194,6 +190,8 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
     throw Error("add_ghosts: pictures: size = " + std::to_string(pictures.size()) + "; must be " +
                 std::to_string(columns * rows * wavelengths.size()) + ", one number for each wavelength and pixel");
   }
+  const Box frame{{at.shift_x_mm - at.width_mm / 2, at.shift_y_mm - at.height_mm / 2},
+                  {at.shift_x_mm + at.width_mm / 2, at.shift_y_mm + at.height_mm / 2}};
   const double pixel_mm = std::min(at.width_mm / at.columns, at.height_mm / at.rows);
   for (std::size_t w = 0; w < wavelengths.size(); ++w) {
     GhostOptions own = options;
@@ -210,17 +208,19 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
       parallel_for(size, 1, options.threads, [&](std::size_t k, std::size_t) {
         const LightPath path = path_of(lens, paths.pairs[begin + k]);
         const Box box = path.region(paths.entrance, own.wavelength);
-        const auto with = [&](std::size_t cells) {
-          return path.footprint(paths.entrance, box, cells, surfaces, own.wavelength, at);
-        };
         constexpr std::size_t coarse = 32;
-        footprints[k] = with(coarse);
-        if (const std::size_t cells = cells_for(footprints[k], coarse, pixel_mm); cells > coarse) {
-          footprints[k] = with(cells);
+        Footprint& footprint = footprints[k];
+        footprint = path.footprint(paths.entrance, box, coarse, surfaces, own.wavelength, at, frame);
+        if (footprint.deposits.empty()) return;
+        const Vec2<double> part = (footprint.lit.high - footprint.lit.low) / (box.high - box.low);
+        const double cells = static_cast<double>(cells_for(footprint, coarse, pixel_mm)) * std::max(part.x, part.y);
+        if (cells > coarse || part.x * part.y < 0.5) {
+          footprint = path.footprint(paths.entrance, footprint.lit, static_cast<std::size_t>(std::max(cells, 16.0)),
+                                     surfaces, own.wavelength, at, frame);
         }
         lists[k].resize((rows + band - 1) / band);
-        for (std::uint32_t m = 0; m < footprints[k].deposits.size(); ++m) {
-          Deposit& deposit = footprints[k].deposits[m];
+        for (std::uint32_t m = 0; m < footprint.deposits.size(); ++m) {
+          Deposit& deposit = footprint.deposits[m];
           double low = std::numeric_limits<double>::infinity(), high = -low;
           for (Vec2<double>& corner : std::span(deposit.corners).first(static_cast<std::size_t>(deposit.count))) {
             corner = at.raster({corner.x, corner.y});
@@ -237,6 +237,7 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
       });
       parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = 0; k < size; ++k) {
+          if (footprints[k].deposits.empty()) continue;
           for (const std::uint32_t m : lists[k][first / band]) {
             const Deposit& deposit = footprints[k].deposits[m];
             raster.add({deposit.corners.data(), static_cast<std::size_t>(deposit.count)}, deposit.energy, first, last);

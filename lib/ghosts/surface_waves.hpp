@@ -30,7 +30,7 @@ struct Wave {
 /// A ray at a surface: the point, the normal, and the light that the surface reflects and transmits.
 struct Contact {
   Vec point, normal;  ///< lens frame; unit normal, to +z at the vertex
-  double cosine = 1;  ///< of the angle of incidence
+  double cosine = 1;  ///< cosine of the angle of incidence
   SurfaceLight light;
   double sign_p = -1;  ///< sign of the reflected p field relative to the s field
 };
@@ -54,7 +54,7 @@ class PETZVAL_API Surfaces {
   RayFate meet(std::size_t surface, bool forward, const Vec& origin, const Vec& direction, bool apertures,
                Contact& contact) const;
 
-  /// Replace the direction and the wave by those of the reflected or the refracted ray; false on total reflection.
+  /// Turn the direction and the wave into the reflected or the refracted ray; false on total reflection.
   static void reflect(const Contact& contact, Vec& direction, Wave& wave) noexcept;
   bool refract(std::size_t surface, bool forward, const Contact& contact, Vec& direction, Wave& wave) const noexcept;
 

@@ -55,8 +55,8 @@ class Teaching : public Programs {
 
 TEST_F(Teaching, ProgramsAreShortAndUsePublicHeadersOnly) {
   const auto sources = std::filesystem::path(PETZVAL_TEST_DATA).parent_path() / "examples";
-  for (const char* name : {"autofocus", "bokeh_psf", "focus_editor", "hello_blur", "hello_camera", "hello_lens",
-                           "path_tracer", "spot_diagram", "tilt_fit"}) {
+  for (const char* name : {"autofocus", "bokeh_psf", "focus_editor", "hello_blur", "hello_camera", "hello_ghosts",
+                           "hello_lens", "path_tracer", "spot_diagram", "tilt_fit"}) {
     SCOPED_TRACE(name);
     const auto source = lines(read(sources / (std::string(name) + ".cpp")));
     EXPECT_LE(source.size(), 100u);
@@ -67,6 +67,16 @@ TEST_F(Teaching, ProgramsAreShortAndUsePublicHeadersOnly) {
       EXPECT_TRUE(!line.starts_with("#include") || own || standard) << line;
     }
   }
+}
+
+TEST_F(Teaching, HelloGhosts_Coated_AreFainter) {
+  const std::string out = output("hello_ghosts", {});
+  const auto coated = out.find("magnesium");
+  ASSERT_NE(coated, std::string::npos) << out;
+  const auto energy = [](const std::string& text) {
+    return std::stod(text.substr(text.find(": ", text.find("surfaces")) + 2));
+  };
+  EXPECT_LT(energy(out.substr(coated)), energy(out) / 10) << out;
 }
 
 TEST_F(Teaching, SpotDiagram_OnAxis_HasSmallerSpotsThanAtTheEdge) {
