@@ -225,7 +225,6 @@ int commands::ghosts(int argc, char** argv) {
     petzval::Lens lens = examples::focused(loaded, options.setup);
     const std::optional<petzval::Lens> coated = examples::coated(lens, options.coatings);
     if (coated) lens = *coated;
-    if (!coated) examples::note(lens.name() + ": the file states no coatings; all surfaces are uncoated");
     petzval::Film film = options.setup.sized_film(options.width, options.height, usual_columns);
     examples::say_what_does_not_fit(lens, film);
     const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
@@ -233,6 +232,7 @@ int commands::ghosts(int argc, char** argv) {
 
     petzval::GhostOptions ghost{.film_reflectance = options.film_reflectance, .threads = examples::threads()};
     petzval::Ghosts ghosts = petzval::ghost_pairs(lens, light.point, ghost);
+    if (!coated) examples::note(lens.name() + ": the file states no coatings; all surfaces are uncoated");
     if (static_cast<double>(ghosts.pairs.size()) > most) ghosts.pairs.resize(static_cast<std::size_t>(most));
     if (ghosts.left_out > 0) {
       examples::note(std::to_string(ghosts.left_out) + " pairs are left out; they hold at most " +

@@ -19,7 +19,7 @@ struct Group {
   std::string_view flags;
 };
 constexpr std::array all_groups{
-    Group{"Scene", false, " --scene --image --deep --depth --table --points --keys --balls "},
+    Group{"Scene", false, " --scene --image --deep --depth --table --points --keys --balls --light "},
     Group{"Lens", false, " --thin-lens --singlet --model --budget --f-number --blades "},
     Group{"Focus", false,
           " --focus --at --fields --from --criterion --film-position --defocus --tilt --swing --max-tilt --fit-tilt "
@@ -27,16 +27,18 @@ constexpr std::array all_groups{
     Group{"Picture", false,
           " --film --fov --size --width --columns --title --white-point --normalisation --exposure --frames --fps "
           "--travel "},
-    Group{"Work", false, " --integrator --diffraction --wavelengths --spp --rays --noise --time --compare "},
+    Group{"Work", false,
+          " --integrator --diffraction --film-reflectance --wavelengths --spp --rays --noise --time --compare "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false,
           " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "
           "--precision --surfaces-from "},
     Group{"Quality", true,
-          " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "},
+          " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "
+          "--pairs "},
     Group{"Depths", true, " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --white "},
     Group{"Files", true,
-          " --deep-out --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
+          " --deep-out --pair-layers --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "
           "--weight-distribution --weight-strength --weight-map "},

@@ -35,6 +35,7 @@ const std::vector<Command> commands = {
     {"surface", {"LENS", "--points", "@surface.json", "--out", "@out"}},
     {"focus", {"LENS"}},
     {"export", {"LENS", "--camera", "@t.bin", "--calibration", "@out", "--ray-map", "@rays.exr", "--size", "24"}},
+    {"ghosts", {"LENS", "--light", "0,5", "--wavelengths", "d", "--size", "8", "--out", "@out"}},
     {"metadata", {"LENS", "--out", "@out"}},
     {"report", {"LENS"}},
     {"psf-set",

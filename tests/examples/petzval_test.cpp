@@ -34,7 +34,7 @@ TEST_F(Petzval, OverviewListsTheCommands) {
   const auto all = commands();
   for (const char* name : {"lenses", "report", "convert",     "focus",  "trace",   "spots",      "psf",    "psf-set",
                            "colour", "shapes", "tilt",        "pull",   "surface", "expressive", "export", "metadata",
-                           "models", "choose", "camera-rays", "render", "sheet",   "blur"}) {
+                           "models", "choose", "camera-rays", "render", "sheet",   "blur",       "ghosts"}) {
     EXPECT_NE(std::ranges::find(all, name), all.end()) << name;
   }
 }
