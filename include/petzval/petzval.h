@@ -501,7 +501,7 @@ typedef struct petzval_lens_rays_options {
   int32_t over_pixels;  /**< 1: rays start all over their pixel, for layers with a sample per pixel; 0: at its centre */
   int32_t threads;      /**< 0: 1 */
   double nearest_mm;    /**< depth of the nearest surface; 0: the focal length of an image 24 mm high */
-  const double* rgb_nm; /**< wavelengths of red, green and blue; NULL: the primary wavelength */
+  const double* rgb_nm; /**< red, green and blue, which the lens covers; NULL: the primary wavelength */
 } petzval_lens_rays_options;
 
 typedef struct petzval_lens_rays_info {
@@ -525,7 +525,10 @@ typedef struct petzval_gather_options {
   void* user;
 } petzval_gather_options;
 
-/** Tabulates the rays of a camera with a fixed focus. `options` may be NULL. */
+/**
+ * Tabulates the rays of a camera with a fixed focus. `options` may be NULL. The weights follow the normalisation of the
+ * camera: with PETZVAL_UNITY_ON_AXIS a picture keeps its brightness.
+ */
 PETZVAL_C_API petzval_status petzval_lens_rays_create(const petzval_camera* camera,
                                                       const petzval_lens_rays_options* options,
                                                       petzval_lens_rays** rays);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <random>
 #include <string>
 #include <thread>
@@ -22,6 +23,7 @@ constexpr Rect whole{0, 0, columns, rows};
 class StandIn : public Host {
  public:
   static constexpr Rect source{-7, -7, columns + 7, rows + 7};
+  Rect bounds = source;  ///< of the images that the host returns
   std::vector<float> rgba, depth;
   std::atomic<int> fetched = 0, aborts_after = 1 << 30;
   std::atomic<bool> released = true;
@@ -41,7 +43,7 @@ class StandIn : public Host {
     ++fetched, released = false;
     const int channels = clip == Clip::colour ? 4 : 1;
     return {reinterpret_cast<char*>((clip == Clip::colour ? rgba : depth).data()),
-            4 * channels * (source.x2 - source.x1), source};
+            4 * channels * (source.x2 - source.x1), bounds};
   }
   void release(const Image&) override { released = true; }
   bool abort() override { return --aborts_after < 0; }
@@ -116,6 +118,22 @@ TEST(OpenFxNode, PixelsOutsideTheRegionOfInterestChangeNoBit) {
   }
 }
 
+TEST(OpenFxNode, KeepsThePlainPictureAtEveryFNumber) {
+  StandIn host;
+  std::fill(host.rgba.begin(), host.rgba.end(), 1.0f);
+  for (const double f_number : {2.8, 8.0}) {
+    BlurNode node(host);
+    Parameters p = parameters();
+    p.f_number = f_number;
+    ASSERT_EQ(node.set(p), Status::ok) << host.last_message;
+    Output output;
+    ASSERT_EQ(node.render(1, whole, output.image()), Status::ok) << host.last_message;
+    const std::size_t middle = 4 * (static_cast<std::size_t>(rows / 2 + 3) * (columns + 6) + columns / 2 + 3);
+    EXPECT_NEAR(output.pixels[middle], 1, 0.03);
+    EXPECT_NEAR(output.pixels[middle + 3], 1, 1e-3);
+  }
+}
+
 TEST(OpenFxNode, AbortedAndRefusedTilesWriteNothing) {
   StandIn host;
   BlurNode node(host);
@@ -135,6 +153,13 @@ TEST(OpenFxNode, AbortedAndRefusedTilesWriteNothing) {
   for (const Rect& tile : {Rect{-1, 0, 9, 9}, Rect{140, 90, 151, 99}, Rect{5, 5, 5, 9}, Rect{9, 9, 5, 5}}) {
     EXPECT_EQ(node.render(1, tile, output.image()), Status::failed);
   }
+  for (const double unit : {0.0, -1.0, std::nan("")}) {
+    p = parameters(), p.mm_per_unit = unit;
+    EXPECT_EQ(node.set(p), Status::failed) << unit;
+  }
+  host.bounds.x2 = host.bounds.x1;
+  EXPECT_EQ(node.render(3, whole, output.image()), Status::failed);
+  host.bounds = StandIn::source;
   host.rgba[3] = 1.5f;  // alpha
   EXPECT_EQ(node.render(2, whole, output.image()), Status::failed);
   EXPECT_NE(host.last_message.find("alpha"), std::string::npos);

@@ -69,12 +69,17 @@ class BlurNode {
 
   /// kOfxActionInstanceChanged: makes the rays of the lens. After a failure the node keeps its parameters.
   Status set(const Parameters& parameters) {
+    if (!(parameters.mm_per_unit > 0 && std::isfinite(parameters.mm_per_unit))) {
+      return failed("mm_per_unit = " + std::to_string(parameters.mm_per_unit) + "; must be positive and finite");
+    }
     petzval_film film = petzval_film_init();
     film.columns = parameters.columns, film.rows = parameters.rows;
     film.height_mm = 36.0 * parameters.rows / std::max(parameters.columns, 1);
     petzval17::Lens lens = petzval17::Lens::read(parameters.lens);
     lens.f_number(parameters.f_number).focus(parameters.focus_mm);
-    const petzval17::Camera camera(lens, film);
+    petzval_camera_options exposed = petzval_camera_options_init();
+    exposed.normalisation = PETZVAL_UNITY_ON_AXIS;  // a picture keeps its brightness
+    const petzval17::Camera camera(lens, film, exposed);
     if (!camera) return failed(camera.message());
     petzval_lens_rays_options options = petzval_lens_rays_options_init();
     options.count = parameters.rays, options.over_pixels = 1, options.threads = host_.threads();
@@ -138,6 +143,7 @@ class BlurNode {
     const Rect layer = grown(region_of_definition(), info_.overscan);
     const std::vector<float> rgba = fetched(Clip::colour, time, layer, 4);
     std::vector<float> depth_mm = fetched(Clip::depth, time, layer, 1);
+    if (rgba.empty() || depth_mm.empty()) return status = failed("a clip has no pixels"), nullptr;
     for (float& depth : depth_mm) depth *= static_cast<float>(parameters_.mm_per_unit);
     const float *const colours = rgba.data(), *const depths = depth_mm.data();
     petzval_layers* made = nullptr;
@@ -149,12 +155,14 @@ class BlurNode {
     return frame_.second;
   }
 
-  /// The pixels of a region from the top row down; beyond the edges of the image, its edge pixels.
+  /// The pixels of a region from the top row down; beyond the edges of the image, its edge pixels. None of an empty
+  /// image.
   std::vector<float> fetched(Clip clip, double time, const Rect& region, int channels) {
     const Image image = host_.image(clip, time, region);
     const Rect& b = image.bounds;
+    const bool empty = !image.data || b.x1 >= b.x2 || b.y1 >= b.y2;
     std::vector<float> pixels;
-    for (int y = region.y2 - 1; image.data && y >= region.y1; --y) {
+    for (int y = region.y2 - 1; !empty && y >= region.y1; --y) {
       for (int x = region.x1; x < region.x2; ++x) {
         const float* const pixel = image.at(std::clamp(x, b.x1, b.x2 - 1), std::clamp(y, b.y1, b.y2 - 1), channels);
         pixels.insert(pixels.end(), pixel, pixel + channels);
