@@ -145,6 +145,9 @@ void add_input(examples::App& app, InputFlags& flags, double& fov_deg, std::uint
                                  "invisible: the two pictures with --deep and --holdout exchanged add up to the whole")
                       ->type_name("DEEP.exr")
                       ->needs(deep);
+  app.add_check([holdout, &flags] {
+    if (holdout->given() && flags.holdout.empty()) throw Error("--holdout = \"\"; must be a file");
+  });
   const auto add_part = [&](const char* flag, std::string& part, auto* of) {
     app.add_option(flag, part, "name of the part of the deep file")
         ->type_name("NAME")
@@ -223,6 +226,8 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
     read_picture();
   }
   columns_ = lists_.columns, rows_ = lists_.rows;
+  petzval::check_fragments(lists_, flags.deep.empty() ? flags.image : flags.deep);
+  if (!flags.holdout.empty()) petzval::check_fragments(holdout_, flags.holdout, false);
   if (flags.depth_unit.empty()) return;
   const auto unit =
       static_cast<float>(examples::parse_length("--depth-unit", "1" + flags.depth_unit, examples::positive_number));
@@ -231,11 +236,17 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   }
 }
 
+std::string LayerInput::file() const {
+  return scene_                  ? "--scene = " + flags_.scene
+         : !flags_.depth.empty() ? flags_.depth
+         : !flags_.deep.empty()  ? flags_.deep
+                                 : flags_.image;
+}
+
 void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool failed) const {
   const bool unit_given = !flags_.depth_unit.empty() || flags_.near_mm > 0;
   if (scene_ || (unit_given && !failed) || nearest_mm >= std::abs(focal_length_mm)) return;
-  const std::string& file = !flags_.depth.empty() ? flags_.depth : !flags_.deep.empty() ? flags_.deep : flags_.image;
-  throw Error(file + ": nearest depth = " + examples::number(nearest_mm, 3) + " mm; must be " +
+  throw Error(file() + ": nearest depth = " + examples::number(nearest_mm, 3) + " mm; must be " +
               (unit_given ? "" : "at least ") + "the focal length of the lens, " +
               examples::number(focal_length_mm, 3) +
               (unit_given ? " mm, or more: the blur of nearer surfaces is too wide to compute"

@@ -37,6 +37,8 @@ class LayerInput {
   const renderer::Pose& pose() const noexcept { return pose_; }
   /// The scene; null if the layers come from files.
   LitScene* scene() const noexcept { return scene_.get(); }
+  /// The file of the depths, or the scene, for messages.
+  std::string file() const;
   /// True if the layers come from a deep picture, which may be transparent.
   bool deep() const noexcept { return !flags_.deep.empty(); }
   /// The samples of a deep picture that its holdout leaves, with the depths of nearest_mm().

@@ -51,11 +51,16 @@ RgbImage averaged(const RgbImage& image, int side) {
 RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera) {
   RgbImage image(camera.columns, camera.rows);
   const int overscan = (layers.columns() - camera.columns) / 2;
-  if (layers.count() == 0) return image;
   for (int y = 0; y < camera.rows; ++y) {
     for (int x = 0; x < camera.columns; ++x) {
       const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
-      std::copy_n(layers.rgba(0, pixel).data(), 3, image.pixel(x, y));
+      float through = 1;
+      for (int layer = 0; layer < layers.count() && through > 0; ++layer) {
+        if (layers.inverse_depth(layer)[pixel] < 0) break;
+        const auto rgba = layers.rgba(layer, pixel);
+        for (std::size_t c = 0; c < 3; ++c) image.pixel(x, y)[c] += through * rgba[c];
+        through *= 1 - rgba[3];
+      }
     }
   }
   return image;

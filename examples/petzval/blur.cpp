@@ -106,6 +106,9 @@ class Job {
       throw petzval::Error("--compare-rays: --frames = " + std::to_string(options.frames) + "; must be 1");
     }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
+    if (side_ > 1 && !options.deep_out.empty()) {
+      throw petzval::Error("--deep-out: --supersample = " + std::to_string(side_) + "; must be 1");
+    }
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare needs --scene");
       if (options.travel_mm != 0) throw petzval::Error("--travel needs --scene: files have a fixed camera");
@@ -137,6 +140,7 @@ class Job {
     }
     if (options_.frames > 1) write_frames(folder);
     if (options_.compare_rays > 0) compare_rays(folder);
+    want_free(folder / "blur.json");
     if (!options_.deep_out.empty()) petzval::write_deep_exr(input_.held_out(), options_.deep_out);
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
     progress.reset();
@@ -161,7 +165,7 @@ class Job {
     if (input_.scene()) input_.scene()->move_to({static_cast<float>(travelled_mm), 0, 0});
     const double nearest = nearest_mm_ = input_.nearest_mm(lens_.layers(), threads_);
     if (!std::isfinite(nearest))
-      throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
+      throw petzval::Error(input_.file() + ": no depth is finite and positive; must have at least one");
     input_.refuse_near(nearest, lens_.focal_length_mm());
     auto start = std::chrono::steady_clock::now();
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
@@ -352,8 +356,19 @@ class Job {
     if (options_.frames == 1) write(reference, std::filesystem::path(options_.out_folder) / "reference");
   }
 
+  /// @throws petzval::Error if a file of --out is also an input or --deep-out
+  void want_free(const std::filesystem::path& file) const {
+    const lens_blur::InputFlags& input = options_.input;
+    for (const std::string& other : {input.image, input.depth, input.deep, input.holdout, options_.deep_out}) {
+      if (other.empty() || std::filesystem::weakly_canonical(other) != std::filesystem::weakly_canonical(file))
+        continue;
+      throw petzval::Error("--out: " + file.string() + " is a file of another flag; must be another folder");
+    }
+  }
+
   void write(const RgbImage& image, const std::filesystem::path& stem,
              const std::map<std::string, std::vector<float>>& channels = {}) const {
+    for (const std::string& format : options_.formats) want_free(stem.string() + '.' + format);
     for (const auto& file :
          examples::write_picture(image, petzval::to_srgb8(image), options_.formats, stem, {}, {}, channels)) {
       std::cout << file.string() << '\n';

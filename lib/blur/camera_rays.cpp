@@ -170,6 +170,15 @@ LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span
   }
   const Wavelength primary{};
   if (wavelengths.empty()) wavelengths = {&primary, 1};
+  CameraSample middle;
+  middle.film = camera.film().point(columns / 2.0, rows / 2.0);
+  for (const Wavelength at : wavelengths) {
+    // The index throws if the lens does not cover the wavelength.
+    middle.wavelength = at;
+    if (!at.in_nm() || camera.sample(middle).fate == RayFate::outside_spectrum) {
+      static_cast<void>(camera.lens().index(0, at));
+    }
+  }
   return LensRays(layers, points, static_cast<int>(wavelengths.size()),
                   RaysOfCamera(camera, layers, wavelengths, options), options);
 }

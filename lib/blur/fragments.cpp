@@ -59,29 +59,19 @@ class Mixture {
 
 bool has_pixels(const FragmentLists& lists) { return lists.columns != 0 || lists.rows != 0; }
 
-void check(const char* where, const FragmentLists& lists) {
-  check_size(where, lists.columns, lists.rows);
-  const auto pixels = static_cast<std::size_t>(lists.columns) * static_cast<std::size_t>(lists.rows);
-  if (lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
-      lists.offsets.back() != lists.fragments.size() || !std::ranges::is_sorted(lists.offsets)) {
-    throw Error(std::string(where) +
-                ": offsets must rise from 0 to the number of fragments, with one for each pixel and one more");
-  }
-}
-
 /// The samples of a pixel of an image and its holdout, from near to far and without overlaps. Samples at equal depths
 /// are mixed, so that their order does not matter.
 class DeepPixel {
  public:
   DeepPixel(const FragmentLists& lists, const FragmentLists& holdout) : lists_(lists), holdout_(holdout) {
-    check("fragments", lists);
+    check_fragments(lists, "fragments");
     if (!has_pixels(holdout)) return;
     if (holdout.columns != lists.columns || holdout.rows != lists.rows) {
       throw Error("holdout: size = " + std::to_string(holdout.columns) + " x " + std::to_string(holdout.rows) +
                   "; must be the size of the fragments, " + std::to_string(lists.columns) + " x " +
                   std::to_string(lists.rows));
     }
-    check("holdout", holdout);
+    check_fragments(holdout, "holdout", false);
   }
 
   const std::vector<Sample>& samples(std::size_t pixel) {
@@ -121,22 +111,12 @@ class DeepPixel {
 
  private:
   void add(const FragmentLists& lists, std::size_t pixel, bool held_out) {
-    const auto refuse = [&](const char* name, float value, const char* rule) {
-      const auto columns = static_cast<std::size_t>(lists.columns);
-      throw Error(std::string(held_out ? "holdout" : "fragments") + ": column " + std::to_string(pixel % columns) +
-                  ", row " + std::to_string(pixel / columns) + ": " + name + " = " + to_text(value) + "; must be " +
-                  rule);
-    };
     for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
       const FragmentLists::Fragment& f = lists.fragments[i];
       if (!(f.depth_mm > 0)) continue;
-      if (!(f.alpha >= 0 && f.alpha <= 1)) refuse("alpha", f.alpha, "0 to 1");
       const bool volume = f.back_mm > f.depth_mm && std::isfinite(f.back_mm) && f.alpha < 1;
       Sample s{f.depth_mm, volume ? f.back_mm : f.depth_mm, {0, 0, 0, f.alpha, 0}};
       if (!held_out) s.values = {f.red, f.green, f.blue, f.alpha, f.alpha};
-      for (const float value : s.values) {
-        if (std::isnan(value)) refuse("colour", value, "a number");
-      }
       sorted_.push_back(s);
     }
   }
@@ -206,6 +186,29 @@ class PixelSurfaces {
 };
 
 }  // namespace
+
+void check_fragments(const FragmentLists& lists, const std::string& where, bool colours) {
+  check_size(where.c_str(), lists.columns, lists.rows);
+  const auto columns = static_cast<std::size_t>(lists.columns), pixels = columns * static_cast<std::size_t>(lists.rows);
+  if (lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
+      lists.offsets.back() != lists.fragments.size() || !std::ranges::is_sorted(lists.offsets)) {
+    throw Error(where + ": offsets must rise from 0 to the number of fragments, with one for each pixel and one more");
+  }
+  for (std::size_t i = 0; i < lists.fragments.size(); ++i) {
+    const FragmentLists::Fragment& f = lists.fragments[i];
+    const auto refuse = [&](const char* name, float value, const char* rule) {
+      const auto next = std::ranges::upper_bound(lists.offsets, i);
+      const auto pixel = static_cast<std::size_t>(next - lists.offsets.begin()) - 1;
+      throw Error(where + ": column " + std::to_string(pixel % columns) + ", row " + std::to_string(pixel / columns) +
+                  ": " + name + " = " + to_text(value) + "; must be " + rule);
+    };
+    if (!(f.depth_mm > 0)) continue;
+    if (!(f.alpha >= 0 && f.alpha <= 1)) refuse("alpha", f.alpha, "0 to 1");
+    for (const float colour : {f.red, f.green, f.blue}) {
+      if (colours && std::isnan(colour)) refuse("colour", colour, "a number");
+    }
+  }
+}
 
 void LayerSet::peel_fragments(const FragmentLists& lists, double bias, int layers, const FragmentLists& holdout) {
   check_number(layers);

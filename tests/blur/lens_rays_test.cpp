@@ -283,7 +283,7 @@ TEST(CameraRays, PartsOfFilmPixelsEqualAFineFilm) {
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(rays[0][i].position, rays[1][i].position);
 }
 
-TEST(CameraRays, RefuseTravellingFilmsAndOtherImages) {
+TEST(CameraRays, RefuseTravellingFilmsOtherImagesAndWavelengths) {
   Film travelling = film;
   travelling.travel_mm = 1;
   const Camera moving(double_gauss(), travelling, {.model = ModelKind::thick}),
@@ -291,6 +291,12 @@ TEST(CameraRays, RefuseTravellingFilmsAndOtherImages) {
   const LayerCamera layers = layer_camera(still);
   expect_error([&] { LensRays::of(moving, layers, vogel_points(4)); }, {"travels"});
   expect_error([&] { LensRays::of(still, small_camera(), vogel_points(4)); }, {320, 240});
+  for (const double nm : {5.0, 1e4, std::nan("")}) {
+    const Wavelength colours[] = {Wavelength{}, Wavelength::nm(nm), Wavelength{}};
+    expect_error([&] { LensRays::of(still, layers, vogel_points(4), colours); }, {"wavelength", "nm"});
+  }
+  const Wavelength seventh[] = {Wavelength(7)};
+  expect_error([&] { LensRays::of(still, layers, vogel_points(4), seventh); }, {"wavelength", 7});
 }
 
 TEST(LensRays, SampleFewPositionsIfRaysAreLinear) {

@@ -152,13 +152,45 @@ TEST_F(LensBlurProgram, PictureAndItsHoldoutAddUpToTheWhole) {
   }
   EXPECT_EQ(petzval::read_deep_exr(path("held.exr")).lists.offsets, petzval::hold_out(wall, pane).offsets);
 
-  // Other sizes and parts are refused, and nothing is written.
+  // Nothing is written if the input does not fit, or if a file would be lost.
   petzval::write_deep_exr({1, 1, {0, 1}, {{1000}}}, path("other"));
-  for (const Arguments& wrong : {Arguments{"--holdout", path("other")}, {"--part", "depth"}}) {
-    const auto outcome = run("blur", joined({lens, {"--deep", path("wall"), "--out", path("no")}, wrong}));
-    EXPECT_NE(outcome.err.find(wrong[1]), std::string::npos) << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(path("no/blur.exr")));
+  petzval::FragmentLists bright = wall;
+  bright.fragments[7].alpha = 1.5f;
+  petzval::write_deep_exr(bright, path("bright")), petzval::write_deep_exr({2, 1, {0, 0, 0}, {}}, path("empty"));
+  struct Wrong {
+    Arguments arguments;
+    std::vector<std::string> words;
+  };
+  for (const auto& [wrong, words] : {
+           Wrong{{path("wall"), "--holdout", path("other")}, {path("other"), "24 x 16"}},
+           Wrong{{path("wall"), "--part", "depth"}, {"depth"}},
+           Wrong{{path("wall"), "--holdout", ""}, {"--holdout", "must be"}},
+           Wrong{{path("bright")}, {path("bright"), "column 6, row 0", "alpha"}},
+           Wrong{{path("wall"), "--holdout", path("bright"), "--supersample", "2"},
+                 {path("bright"), "column 6, row 0"}},
+           Wrong{{path("empty")}, {path("empty"), "depth"}},
+           Wrong{{path("wall"), "--supersample", "2", "--deep-out", path("fine.exr")}, {"--deep-out", "2"}},
+           Wrong{{path("wall"), "--deep-out", path("no/blur.exr")}, {path("no/blur.exr")}},
+       }) {
+    const auto outcome = run("blur", joined({lens, {"--format", "exr", "--out", path("no"), "--deep"}, wrong}));
+    EXPECT_NE(outcome.status, 0) << wrong.back();
+    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(path("no/blur.exr")) || std::filesystem::exists(path("fine.exr")));
   }
+  std::filesystem::copy_file(path("wall"), path("out/sharp.exr"), std::filesystem::copy_options::overwrite_existing);
+  const auto own =
+      run("blur", joined({lens, {"--format", "exr", "--deep", path("out/sharp.exr"), "--out", path("out")}}));
+  EXPECT_NE(own.err.find("sharp.exr"), std::string::npos) << own.err;
+  EXPECT_EQ(petzval::read_deep_exr(path("out/sharp.exr")).lists.offsets, wall.offsets);
+
+  // sharp.exr is what a pinhole sees: the limit of small apertures.
+  EXPECT_EQ(run("blur", {"--thin-lens", "50", "--f-number", "1000", "--focus", "2000", "--format", "exr", "--deep",
+                         path("whole"), "--out", path("small")})
+                .status,
+            0);
+  const auto blur_of = petzval::read_exr_parts(path("small/blur.exr"))[0].channels,
+             sharp = petzval::read_exr_parts(path("small/sharp.exr"))[0].channels;
+  for (std::size_t i = 0; i < 384; ++i) EXPECT_NEAR(blur_of.at("R")[i], sharp.at("R")[i], 2e-3) << i;
 }
 
 TEST_F(LensBlurProgram, FollowsKeysOverFrames) {

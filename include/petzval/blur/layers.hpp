@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "petzval/core/config.hpp"
@@ -109,6 +110,15 @@ struct FragmentLists {
   std::vector<std::size_t> offsets;  ///< columns x rows + 1
   std::vector<Fragment> fragments;
 };
+
+/// Refuses a deep image that LayerSet::peel_fragments() refuses.
+///
+/// @param where    begins the message: the name of the image
+/// @param colours  false: the image is a holdout, whose colours are not used
+/// @throws Error   with the column and the row, if the lists are inconsistent, an alpha is outside 0 to 1 or a colour
+/// is
+///                 NaN
+PETZVAL_API void check_fragments(const FragmentLists& lists, const std::string& where, bool colours = true);
 
 /// The samples of a deep image behind a holdout of the same size, as a pinhole sees the image. Composited, they give
 /// the picture of `lists` without the light and the alpha that the holdout hides.

@@ -154,7 +154,8 @@ class PETZVAL_API LensRays {
   /// @param points       pupil points, `options.set_count` sets of equal size
   /// @param wavelengths  one wavelength, or the wavelengths of red, green and blue; empty: the primary wavelength
   /// @param options      nearest depth, sets and threads
-  /// @throws Error       as the constructor; also if the film travels or the numbers of pixels do not fit
+  /// @throws Error       as the constructor; also if the film travels, the numbers of pixels do not fit or the camera
+  ///                     does not cover a wavelength
   ///
   /// Accuracy: for exact models the light is measured at 49 positions along the longer side and interpolated. At 800 x
   /// 600 it is within 0.5 % of the brightest pixel of 8192 samples per pixel for 55 lenses of data/, and 2 % for the
