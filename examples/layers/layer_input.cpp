@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -47,7 +46,7 @@ std::string ending(const std::string& file) {
 /// Reads the parts of an EXR file, or a picture of another format as one part with channels R, G and B.
 std::vector<petzval::ExrPart> read_parts(const std::string& file) {
   const std::string kind = ending(file);
-  if (kind == ".exr") return petzval::read_exr_parts(file);
+  if (kind == ".exr") return petzval::read_exr_parts(file, petzval::ExrWindow::display);
   const petzval::RgbImage image = [&] {
     if (kind == ".png") return petzval::read_png(file);
     if (kind == ".pfm") return petzval::read_pfm(file);
@@ -67,7 +66,7 @@ std::vector<petzval::ExrPart> read_parts(const std::string& file) {
 petzval::ExrPart read_values(const std::string& file) {
   const std::string kind = ending(file);
   if (kind == ".exr") {
-    petzval::ExrPart part = petzval::read_exr_parts(file).front();
+    petzval::ExrPart part = petzval::read_exr_parts(file, petzval::ExrWindow::display).front();
     const bool single = part.channels.size() == 1;
     part.channels = {{"Z", single ? part.channels.begin()->second : required_channel(part, "Z", file)}};
     return part;
@@ -86,12 +85,14 @@ petzval::ExrPart read_values(const std::string& file) {
   return part;
 }
 
+void note_ignored(std::size_t samples, const char* which, const std::string& file) {
+  if (samples > 0) examples::note(file + ": " + std::to_string(samples) + " samples " + which + " are ignored");
+}
+
 FragmentLists read_deep(const std::string& file, const std::string& part) {
   petzval::DeepPicture deep = petzval::read_deep_exr(file, 1, part);
-  for (const auto& [count, reason] :
-       {std::pair{deep.without_depth, "without a depth"}, std::pair{deep.outside, "outside the display window"}}) {
-    if (count > 0) std::cerr << "note: " << file << ": " << count << " samples " << reason << " are ignored\n";
-  }
+  note_ignored(deep.without_depth, "without a depth", file);
+  note_ignored(deep.outside, "outside the display window", file);
   return std::move(deep.lists);
 }
 
@@ -142,17 +143,22 @@ void add_input(examples::App& app, InputFlags& flags, double& fov_deg, std::uint
   auto* deep = app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
   auto* holdout = app.add_option("--holdout", flags.holdout,
                                  "deep picture of the same size that hides --deep where it is in front, and stays "
-                                 "invisible: the two pictures with --deep and --holdout exchanged add up to the whole")
+                                 "invisible: with --highlights-above 0, the two pictures with --deep and --holdout "
+                                 "exchanged add up to the whole")
                       ->type_name("DEEP.exr")
                       ->needs(deep);
-  app.add_check([holdout, &flags] {
-    if (holdout->given() && flags.holdout.empty()) throw Error("--holdout = \"\"; must be a file");
-  });
+  const auto want_text = [&](const char* flag, const std::string& text, auto* option) {
+    app.add_check([=, &text] {
+      if (option->given() && text.empty()) throw Error(std::string(flag) + " = \"\"; must not be empty");
+    });
+  };
+  want_text("--holdout", flags.holdout, holdout);
   const auto add_part = [&](const char* flag, std::string& part, auto* of) {
-    app.add_option(flag, part, "name of the part of the deep file")
-        ->type_name("NAME")
-        ->default_str("the first deep part")
-        ->needs(of);
+    auto* option = app.add_option(flag, part, "name of the part of the deep file")
+                       ->type_name("NAME")
+                       ->default_str("the first deep part")
+                       ->needs(of);
+    want_text(flag, part, option);
   };
   add_part("--part", flags.part, deep), add_part("--holdout-part", flags.holdout_part, holdout);
   auto* depth = app.add_option("--depth", flags.depth,
@@ -246,8 +252,12 @@ std::string LayerInput::file() const {
 void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool failed) const {
   const bool unit_given = !flags_.depth_unit.empty() || flags_.near_mm > 0;
   if (scene_ || (unit_given && !failed) || nearest_mm >= std::abs(focal_length_mm)) return;
-  throw Error(file() + ": nearest depth = " + examples::number(nearest_mm, 3) + " mm; must be " +
-              (unit_given ? "" : "at least ") + "the focal length of the lens, " +
+  // The holdout, if it alone is too near.
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const FragmentLists::Fragment& f : lists_.fragments) nearest = std::min(nearest, f.depth_mm);
+  const bool by_holdout = !flags_.holdout.empty() && static_cast<double>(nearest) > nearest_mm;
+  throw Error((by_holdout ? flags_.holdout : file()) + ": nearest depth = " + examples::number(nearest_mm, 3) +
+              " mm; must be " + (unit_given ? "" : "at least ") + "the focal length of the lens, " +
               examples::number(focal_length_mm, 3) +
               (unit_given ? " mm, or more: the blur of nearer surfaces is too wide to compute"
                           : " mm: are the depths in metres? --depth-unit m (mm: keep them as they are)"));
@@ -300,9 +310,13 @@ void LayerInput::read_picture() {
     planes.push_back({&required_channel(part, "R", file), &required_channel(part, "G", file),
                       &required_channel(part, "B", file), &required_channel(part, "Z", file), channel(part, "A")});
   }
+  std::size_t without = 0;
   for (std::size_t i = 0; i < planes[0].r->size(); ++i) {
     for (const auto& [r, g, b, z, a] : planes) {
-      if (!((*z)[i] > 0)) continue;
+      if (!((*z)[i] > 0)) {
+        without += (*r)[i] != 0 || (*g)[i] != 0 || (*b)[i] != 0;
+        continue;
+      }
       const float values[] = {(*r)[i], (*g)[i], (*b)[i], a ? (*a)[i] : 1.0f};
       FragmentLists::Fragment* const front =
           lists_.fragments.size() > lists_.offsets.back() ? &lists_.fragments.back() : nullptr;
@@ -317,6 +331,7 @@ void LayerInput::read_picture() {
     }
     lists_.offsets.push_back(lists_.fragments.size());
   }
+  note_ignored(without, "without a depth above 0", file);
 }
 
 float LayerInput::depth_mm(int column, int row) const {

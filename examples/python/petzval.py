@@ -492,12 +492,29 @@ class Blur(_Handle):
         _call("blur_create", ctypes.byref(self._handle))
 
     def gather(self, layers, rays, region=None, threads=0, highlights_above=1, progress=None):
-        """The picture [rows, columns, 4], or its region (left, top, columns, rows). progress(done) returns True to cancel."""
+        """The picture [rows, columns, 4], or its region (left, top, columns, rows). progress(done) returns True to cancel.
+
+        Raises Error if cancelled, or what progress() raised.
+        """
         left, top, columns, rows = region or (0, 0, rays.columns, rays.rows)
         own = _GatherOptions(threads=threads, left=left, top=top, columns=columns, rows=rows, highlights_above=highlights_above)
+        raised = []
+
+        def report(done, _):
+            try:
+                return bool(progress(done))
+            except BaseException as error:
+                raised.append(error)
+                return True
+
         if progress:
-            own.progress = _Progress(lambda done, _: bool(progress(done)))
+            own.progress = _Progress(report)
         data, picture = _empty((max(rows, 0), max(columns, 0), 4), "f")
-        _call("gather", layers._handle, rays._handle, ctypes.byref(own), self._handle, ctypes.c_void_p(data), ctypes.c_ssize_t(16 * columns),
-              None)
+        try:
+            _call("gather", layers._handle, rays._handle, ctypes.byref(own), self._handle, ctypes.c_void_p(data),
+                  ctypes.c_ssize_t(16 * columns), None)
+        except Error:
+            if raised:
+                raise raised[0] from None
+            raise
         return picture

@@ -366,7 +366,9 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
   std::vector<Image> images(cells * cells);
   const Vec3<double> normal = film.normal(), right = film.right(), up = film.up();
   for (std::size_t k = 0; k < count; ++k) {
-    const auto [o, d] = rays[k];
+    const Ray<double> ray = rays[k];
+    const Vec3<double>& o = ray.origin;
+    const Vec3<double>& d = ray.direction;
     const double along = glm::dot(d, normal);
     if (fates[k] != RayFate::transmitted || !(along * film_sense_ > 0)) continue;
     const double t = glm::dot(film.position({}) - o, normal) / along;

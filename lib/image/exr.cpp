@@ -157,7 +157,8 @@ std::uint64_t most_in_a_byte(Imf::Compression compression) noexcept {
 /// An EXR file, part by part.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string().c_str(), 0) {}
+  explicit Reader(const std::filesystem::path& file, ExrWindow window = ExrWindow::data)
+      : path_(file), file_(file.string().c_str(), 0), window_(window) {}
 
   int parts() const { return file_.parts(); }
 
@@ -177,7 +178,37 @@ class Reader {
       throw Error("no channel " + missing + "; must have " + all);
     }
 
-    const Imath::Box2i window = header.dataWindow();
+    const Imath::Box2i window = header.dataWindow(), &display = header.displayWindow();
+    size_part(part, window, most_in_a_byte(header.compression()));
+    const Imath::V2i before = display.min - window.min, after = window.max - display.max;
+    if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
+    Imf::InputPart in(file_, index);
+    in.setFrameBuffer(frame(part, window));
+    in.readPixels(window.min.y, window.max.y);
+    if (window_ == ExrWindow::data || display == window) return part;
+
+    ExrPart whole = part;
+    whole.margin_x = whole.margin_y = 0;
+    size_part(whole, display, 1 << 14);
+    const Imath::V2i low = {std::max(display.min.x, window.min.x), std::max(display.min.y, window.min.y)},
+                     high = {std::min(display.max.x, window.max.x), std::min(display.max.y, window.max.y)};
+    for (auto& [name, to] : whole.channels) {
+      std::ranges::fill(to, 0.0f);
+      const std::vector<float>& from = part.channels.at(name);
+      const auto at = [&](const Imath::Box2i& box, int width, int y) {
+        return std::ptrdiff_t{y - box.min.y} * width + low.x - box.min.x;
+      };
+      for (int y = low.y; low.x <= high.x && y <= high.y; ++y) {
+        std::copy_n(from.begin() + at(window, part.width, y), high.x - low.x + 1,
+                    to.begin() + at(display, whole.width, y));
+      }
+    }
+    return whole;
+  }
+
+ private:
+  /// Makes room for the pixels of a window.
+  void size_part(ExrPart& part, const Imath::Box2i& window, std::uint64_t values_in_a_byte) {
     const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
     const auto height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
     // In this order no product overflows, because sides are below 2^32.
@@ -187,26 +218,18 @@ class Reader {
                   std::to_string(most_values) + " values in all parts");
     }
     const std::uint64_t values = width * height * part.channels.size();
-    if (!image_detail::fits_in_file(values, most_in_a_byte(header.compression()), path_)) {
+    if (!image_detail::fits_in_file(values, values_in_a_byte, path_)) {
       throw Error("part \"" + part.name + "\": values = " + std::to_string(values) +
                   "; must not exceed the size of the file");
     }
     left_ -= values;
-    part.width = static_cast<int>(width);
-    part.height = static_cast<int>(height);
-    const Imath::Box2i& display = header.displayWindow();
-    const Imath::V2i before = display.min - window.min, after = window.max - display.max;
-    if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
+    part.width = static_cast<int>(width), part.height = static_cast<int>(height);
     for (auto& [name, pixels] : part.channels) pixels.resize(static_cast<std::size_t>(width * height));
-    Imf::InputPart in(file_, index);
-    in.setFrameBuffer(frame(part, window));
-    in.readPixels(window.min.y, window.max.y);
-    return part;
   }
 
- private:
   std::filesystem::path path_;
   Imf::MultiPartInputFile file_;
+  ExrWindow window_;
   std::uint64_t left_ = most_values;  ///< remaining values
 };
 
@@ -245,9 +268,9 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
   write_file(stream.str(), file);
 }
 
-std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file) {
+std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file, ExrWindow window) {
   return image_detail::read_exr_file(file, [&] {
-    Reader reader(file);
+    Reader reader(file, window);
     std::vector<ExrPart> parts;
     for (int i = 0; i < reader.parts(); ++i) parts.push_back(reader.part(i));
     return parts;

@@ -80,6 +80,11 @@ for wrong in (lambda: blur.gather(layers, rays, progress=lambda done: True), lam
         expect(False, "a bad argument raises petzval.Error")
     except petzval.Error as error:
         expect(str(error) != "", "the error has a message")
+try:
+    blur.gather(layers, rays, progress=lambda done: 1 // 0)
+    expect(False, "an error of progress() is raised")
+except ZeroDivisionError:
+    pass
 expect(petzval.Camera(lens, model=lens.choose_model(max_px=2).model).info.model != "", "a chosen model makes a camera")
 expect(petzval.Film(z_mm=70).has_z == 1, "a position of the film is used")
 if petzval.numpy is not None:

@@ -157,6 +157,8 @@ TEST(OpenFxNode, AbortedAndRefusedTilesWriteNothing) {
     p = parameters(), p.mm_per_unit = unit;
     EXPECT_EQ(node.set(p), Status::failed) << unit;
   }
+  p = parameters(), p.rows = 0;
+  EXPECT_EQ(node.set(p), Status::failed);
   host.bounds.x2 = host.bounds.x1;
   EXPECT_EQ(node.render(3, whole, output.image()), Status::failed);
   host.bounds = StandIn::source;

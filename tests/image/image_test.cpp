@@ -107,6 +107,23 @@ TEST_F(ImageFiles, ExrPartsRoundTripToTheBit) {
   EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(ImageFiles, ExrDisplayWindowIsReadWithItsOwnPixels) {
+  const auto file = folder_ / "a.exr";
+  // A data window that ends 2 pixels beyond the display window on the left and right, and 1 above and below.
+  ExrPart part{.width = 9, .height = 5, .margin_x = 2, .margin_y = 1};
+  for (int i = 0; i < 45; ++i) part.channels["Z"].push_back(static_cast<float>(i));
+  write_exr({&part, 1}, file);
+  const ExrPart inner = read_exr_parts(file, ExrWindow::display)[0];
+  ASSERT_EQ(std::pair(inner.width, inner.height), std::pair(5, 3));
+  EXPECT_EQ(inner.channels.at("Z"), (std::vector<float>{11, 12, 13, 14, 15, 20, 21, 22, 23, 24, 29, 30, 31, 32, 33}));
+  // A smaller part in the display window of a larger one.
+  ExrPart small{.name = "small", .width = 2, .height = 1, .channels = {{"Z", {7, 8}}}};
+  const std::array parts{ExrPart{.name = "large", .width = 3, .height = 2, .channels = {{"Z", {1, 2, 3, 4, 5, 6}}}},
+                         small};
+  write_exr(parts, file);
+  EXPECT_EQ(read_exr_parts(file, ExrWindow::display)[1].channels.at("Z"), (std::vector<float>{7, 8, 0, 0, 0, 0}));
+}
+
 TEST_F(ImageFiles, ExrKeepsMarginsPairsAndStandardFloats) {
   const auto file = folder_ / "a.exr";
   std::vector<ExrPart> parts = two_parts();

@@ -72,9 +72,13 @@ class BlurNode {
     if (!(parameters.mm_per_unit > 0 && std::isfinite(parameters.mm_per_unit))) {
       return failed("mm_per_unit = " + std::to_string(parameters.mm_per_unit) + "; must be positive and finite");
     }
+    if (parameters.columns < 1 || parameters.rows < 1) {
+      return failed("columns x rows = " + std::to_string(parameters.columns) + " x " + std::to_string(parameters.rows) +
+                    "; must be positive");
+    }
     petzval_film film = petzval_film_init();
     film.columns = parameters.columns, film.rows = parameters.rows;
-    film.height_mm = 36.0 * parameters.rows / std::max(parameters.columns, 1);
+    film.height_mm = 36.0 * parameters.rows / parameters.columns;
     petzval17::Lens lens = petzval17::Lens::read(parameters.lens);
     lens.f_number(parameters.f_number).focus(parameters.focus_mm);
     petzval_camera_options exposed = petzval_camera_options_init();

@@ -76,12 +76,15 @@ struct ExrPart {
 ///               the file cannot be written
 PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
 
+/// The pixels that are read: those of the data window, or of the display window with 0 outside the data window.
+enum class ExrWindow { data, display };
+
 /// Reads all parts of an EXR file with scan lines or tiles.
 ///
 /// Channels of any type are converted to float. Attributes of other types and attributes of every EXR file are skipped.
 ///
 /// @throws Error if the file cannot be read or has more than 3 GiB of values
-PETZVAL_API std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file);
+PETZVAL_API std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file, ExrWindow window = ExrWindow::data);
 
 /// Writes 32-bit float channels R, G, B to an EXR file with write_file(), lossless.
 ///
