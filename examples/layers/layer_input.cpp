@@ -201,6 +201,12 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   if (given != 1) {
     throw Error("layers: " + std::to_string(given) + " of --scene, --image and --deep are given; must be 1");
   }
+  if (flags.deep.empty() && !(flags.part.empty() && flags.holdout.empty())) {
+    throw Error("layers: part and holdout are given without deep; must be left out");
+  }
+  if (flags.holdout.empty() && !flags.holdout_part.empty()) {
+    throw Error("layers: holdout_part is given without holdout; must be left out");
+  }
   if (flags.depth_kind == "inverse" && flags.depth.empty())
     throw Error("--depth-kind = inverse: must be used with --depth");
   if (!flags.depth_unit.empty() && flags.near_mm > 0) {
