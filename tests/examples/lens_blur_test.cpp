@@ -164,7 +164,7 @@ TEST_F(LensBlurProgram, PictureAndItsHoldoutAddUpToTheWhole) {
   for (const auto& [wrong, words] : {
            Wrong{{path("wall"), "--holdout", path("other")}, {path("other"), "24 x 16"}},
            Wrong{{path("wall"), "--part", "depth"}, {"depth"}},
-           Wrong{{path("wall"), "--holdout", ""}, {"--holdout", "must be"}},
+           Wrong{{path("wall"), "--holdout", ""}, {"--holdout", "\"\""}},
            Wrong{{path("bright")}, {path("bright"), "column 6, row 0", "alpha"}},
            Wrong{{path("wall"), "--holdout", path("bright"), "--supersample", "2"},
                  {path("bright"), "column 6, row 0"}},
