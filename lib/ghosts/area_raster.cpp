@@ -66,6 +66,15 @@ void AreaRaster::add_edge(const Vec2<double>& from, const Vec2<double>& to, doub
 void AreaRaster::add_slice(std::size_t row, double x0, double x1, double weight) noexcept {
   double* const to = differences_.data() + row * (columns_ + 2);
   const auto width = static_cast<double>(columns_);
+  if (x0 >= 0 && x1 < width) {
+    const auto column = static_cast<std::size_t>(x0);
+    const auto left = static_cast<double>(column);
+    if (x1 <= left + 1) {  // most edges are steep
+      const double behind = weight * ((x0 + x1) / 2 - left);
+      to[column] += weight - behind, to[column + 1] += behind;
+      return;
+    }
+  }
   if (x0 >= width) return;
   if (x1 <= 0) {
     to[0] += weight;

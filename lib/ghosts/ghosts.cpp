@@ -125,16 +125,35 @@ GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double en
   return result;
 }
 
-/// Number of cells along a side at which the edges of deposits are wrong by at most 0.2 pixels, from a coarse
-/// footprint.
-std::size_t cells_for(const Footprint& coarse, std::size_t cells, double pixel_mm) {
+/// A part of the entrance plane and a number of cells along its sides.
+struct Cells {
+  Box box;
+  std::size_t count = 0;  ///< 0: no light reaches the frame
+  double energy = 0;      ///< in the frame, estimated
+};
+
+/// Cells with which the edges of deposits are wrong by at most 0.2 pixels, from a coarse footprint of a region.
+Cells cells_for(const Footprint& coarse, const Box& region, std::size_t cells, double pixel_mm, const Box& frame) {
+  Cells result{coarse.lit};
+  for (const Deposit& deposit : coarse.deposits) {
+    Vec2<double> low = deposit.corners[0], high = low;
+    for (const Vec2<double>& corner : std::span(deposit.corners).first(static_cast<std::size_t>(deposit.count))) {
+      low = glm::min(low, corner), high = glm::max(high, corner);
+    }
+    const Vec2<double> size = high - low, seen = glm::min(high, frame.high) - glm::max(low, frame.low);
+    if (seen.x < 0 || seen.y < 0) continue;
+    result.energy += deposit.energy * (size.x > 0 ? seen.x / size.x : 1) * (size.y > 0 ? seen.y / size.y : 1);
+  }
+  if (!(result.energy > 0)) return result;
   const double tolerance_mm = 0.2 * pixel_mm;
   // A circle that is drawn with chords of length c is wrong by c^2 / (8 radius).
   const double by_edge = std::sqrt(static_cast<double>(cells) * coarse.cell_mm / (4 * tolerance_mm));
   // The mismatch of adjacent cells falls with the third power.
   const double by_mismatch = static_cast<double>(cells) * std::cbrt(coarse.mismatch_mm / tolerance_mm);
-  const double wanted = std::max({by_edge, by_mismatch, static_cast<double>(cells)});
-  return wanted < static_cast<double>(most_cells) ? static_cast<std::size_t>(wanted) : most_cells;
+  const Vec2<double> part = (coarse.lit.high - coarse.lit.low) / (region.high - region.low);
+  const double wanted = std::max({by_edge, by_mismatch, static_cast<double>(cells)}) * std::max(part.x, part.y);
+  result.count = static_cast<std::size_t>(std::clamp(wanted, 16.0, static_cast<double>(most_cells)));
+  return result;
 }
 
 }  // namespace
@@ -199,6 +218,21 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
     const GhostPaths paths(lens, light, own);
     const Surfaces surfaces(lens, own.wavelength, own.film_reflectance);
     AreaRaster raster(columns, rows);
+    // The cells of each pair, from a coarse footprint.
+    std::vector<Cells> cells(paths.pairs.size());
+    parallel_for(cells.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
+      const LightPath path = path_of(lens, paths.pairs[k]);
+      const Box box = path.region(paths.entrance, own.wavelength);
+      constexpr std::size_t coarse = 24;
+      cells[k] = cells_for(path.footprint(paths.entrance, box, coarse, surfaces, own.wavelength, at, frame), box,
+                           coarse, pixel_mm, frame);
+    });
+    // Few cells suffice for pairs that spread their light far beyond the frame.
+    double energy = 0;
+    for (const Cells& c : cells) energy += c.energy;
+    for (Cells& c : cells) {
+      if (c.energy < 1e-4 * energy) c.count = std::min<std::size_t>(c.count, 48);
+    }
     // Groups limit the memory; the order of deposits does not depend on threads.
     constexpr std::size_t group = 64, band = 16;
     for (std::size_t begin = 0; begin < paths.pairs.size(); begin += group) {
@@ -206,18 +240,11 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
       std::vector<Footprint> footprints(size);
       std::vector<std::vector<std::vector<std::uint32_t>>> lists(size);  // deposits by band of rows
       parallel_for(size, 1, options.threads, [&](std::size_t k, std::size_t) {
-        const LightPath path = path_of(lens, paths.pairs[begin + k]);
-        const Box box = path.region(paths.entrance, own.wavelength);
-        constexpr std::size_t coarse = 32;
+        const Cells& c = cells[begin + k];
+        if (c.count == 0) return;
         Footprint& footprint = footprints[k];
-        footprint = path.footprint(paths.entrance, box, coarse, surfaces, own.wavelength, at, frame);
-        if (footprint.deposits.empty()) return;
-        const Vec2<double> part = (footprint.lit.high - footprint.lit.low) / (box.high - box.low);
-        const double cells = static_cast<double>(cells_for(footprint, coarse, pixel_mm)) * std::max(part.x, part.y);
-        if (cells > coarse || part.x * part.y < 0.5) {
-          footprint = path.footprint(paths.entrance, footprint.lit, static_cast<std::size_t>(std::max(cells, 16.0)),
-                                     surfaces, own.wavelength, at, frame);
-        }
+        footprint = path_of(lens, paths.pairs[begin + k])
+                        .footprint(paths.entrance, c.box, c.count, surfaces, own.wavelength, at, frame);
         lists[k].resize((rows + band - 1) / band);
         for (std::uint32_t m = 0; m < footprint.deposits.size(); ++m) {
           Deposit& deposit = footprint.deposits[m];

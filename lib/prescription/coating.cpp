@@ -158,6 +158,17 @@ SurfaceLight surface_light(const Coating& coating, double index_before, double i
             .transmittance_s = 1 - reflectance,
             .transmittance_p = 1 - reflectance};
   }
+  if (coating.layers.empty()) {  // Fresnel
+    if (behind_squared < 0) return {.reflectance_s = 1, .reflectance_p = 1, .transmittance_s = 0, .transmittance_p = 0};
+    const double normal = std::sqrt(behind_squared);
+    const auto fractions = [](double before, double after) {
+      const double sum = before + after, difference = before - after;
+      return std::array{difference * difference / (sum * sum), 4 * before * after / (sum * sum)};
+    };
+    const auto s = fractions(index_before * cosine, normal),
+               p = fractions(index_before / cosine, index_behind * index_behind / normal);
+    return {.reflectance_s = s[0], .reflectance_p = p[0], .transmittance_s = s[1], .transmittance_p = p[1]};
+  }
   const LayerWave behind({.index = index_behind}, tangential_squared, wavelength_nm);
   const auto start = [](const Complex& admittance) { return Fields{1, admittance, admittance.real()}; };
   Fields s = start(behind.admittance[0]), p = start(behind.admittance[1]);
