@@ -131,7 +131,7 @@ void write_page(const examples::Report& report, const petzval::LensReport& aberr
     (options.json ? std::cerr : std::cout) << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
-  write(".html", examples::lens_page(report, aberrations, figures, light));
+  write(".html", examples::lens_page(report, aberrations, figures, light, examples::report_ghosts(report, light)));
 }
 
 }  // namespace

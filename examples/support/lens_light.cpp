@@ -13,6 +13,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "text.hpp"
 
@@ -103,6 +104,42 @@ LightReport report_light(const Report& report, const std::string& coatings, cons
   result.values = petzval::transmittance(colours, subject_z(report.subject, colours), fields, threads());
   if (visible) result.colour = daylight_behind(*visible, subject_z(report.subject, *visible));
   result.t_stop = petzval::aperture_state(colours).t_number;
+  return result;
+}
+
+GhostReport report_ghosts(const Report& report, const std::optional<LightReport>& light) {
+  GhostReport result;
+  const petzval::Lens& lens = report.loaded.lens;
+  const auto& fields = report.subject.fields.degrees;
+  if (!fields.empty()) result.field_deg = 0.7 * *std::ranges::max_element(fields);
+  const petzval::GhostOptions options{.max_pairs = 300, .tolerance = 1e-2, .threads = threads()};
+  try {
+    const petzval::ScenePoint point =
+        petzval::scene_point(lens, {petzval::radians(result.field_deg), subject_z(report.subject, lens)});
+    const auto add = [&](const std::string& coatings, const petzval::Lens& coated) {
+      petzval::Ghosts ghosts = petzval::ghost_pairs(coated, point, options);
+      GhostReport::Column column{coatings};
+      if (result.columns.empty()) {
+        result.left_out = ghosts.left_out, result.pairs = ghosts.pairs;
+        result.pairs.resize(std::min<std::size_t>(result.pairs.size(), 10));
+      }
+      for (const petzval::GhostPair& wanted : result.pairs) {
+        const auto same = std::ranges::find_if(ghosts.pairs, [&](const petzval::GhostPair& pair) {
+          return pair.first == wanted.first && pair.second == wanted.second;
+        });
+        column.energies.push_back(same == ghosts.pairs.end() ? 0 : same->energy);
+      }
+      for (const petzval::GhostPair& pair : ghosts.pairs) column.glare += pair.energy;
+      result.columns.push_back(std::move(column));
+    };
+    add("no coatings", petzval::with_coating(lens, {}));
+    add("MgF2", petzval::with_coating(lens, petzval::Coating::quarter_wave()));
+    if (light && light->coatings != "none" && light->coatings != "mgf2") {
+      add(light->coatings.empty() ? "of the file" : light->coatings, *coated(lens, light->coatings));
+    }
+  } catch (const petzval::Error& error) {
+    result.failure = error.what();
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "files.hpp"
 #include "lens_report.hpp"
 #include "petzval/analysis/transmittance.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 
 namespace examples {
 
@@ -52,6 +53,24 @@ std::optional<petzval::LensColour> daylight_behind(const petzval::Lens& visible,
 /// @throws petzval::Error under the conditions of petzval::transmittance() and petzval::lens_colour()
 LightReport report_light(const Report& report, const std::string& coatings, const petzval::Lens& colours,
                          const std::optional<petzval::Lens>& visible);
+
+/// Ghosts of a point of light at 0.7 of the largest field, for several coatings.
+struct GhostReport {
+  struct Column {
+    std::string coatings;
+    double glare = 0;  ///< energy of all pairs, as a fraction of the light that enters
+    std::vector<double> energies{};
+  };
+  double field_deg = 0;
+  std::vector<petzval::GhostPair> pairs{};  ///< the ten brightest without coatings
+  std::vector<Column> columns{};            ///< with energies of `pairs`
+  std::size_t left_out = 0;                 ///< number of pairs that were not computed
+  std::string failure{};                    ///< the reason why there are none
+};
+
+/// The ghosts without coatings, with one layer of magnesium fluoride, and with the coatings of `light` if there are
+/// any, at the primary wavelength.
+GhostReport report_ghosts(const Report& report, const std::optional<LightReport>& light);
 
 /// The keys transmittance, t_stop, colour, coatings and uncoated_surfaces; null without a report.
 Json to_json(const std::optional<LightReport>& light);

@@ -200,6 +200,43 @@ void light_table(std::ostream& html, const LightReport& light) {
   html << "</table></div>\n";
 }
 
+void ghost_table(std::ostream& html, const Report& r, const GhostReport& ghosts) {
+  html
+      << "<h2>Ghosts</h2>\n<p class=\"lead\">Light of a point at " << number(ghosts.field_deg, 3)
+      << "\u00b0 that two surfaces reflect to the film, as fractions of the light that enters the first surface within "
+         "its rim. ";
+  if (!ghosts.failure.empty()) {
+    html << "Not computed: " << escaped_html(ghosts.failure) << ".</p>\n";
+    return;
+  }
+  html << "The brightest pairs without coatings, and the sum of all pairs";
+  if (ghosts.left_out > 0) html << " but the " << ghosts.left_out << " weakest";
+  html << "; petzval ghosts draws them.</p>\n<div class=\"scroll\"><table>\n<tr><th>surfaces</th>";
+  for (const GhostReport::Column& column : ghosts.columns) {
+    html << "<th class=\"number\">" << escaped_html(column.coatings) << "</th>";
+  }
+  html << "<th class=\"number\">centre (mm)</th><th class=\"number\">rms radius (mm)</th></tr>\n";
+  const auto row = [&](const std::string& name, const auto& energy_of, const std::string& rest) {
+    html << "<tr><td>" << name << "</td>";
+    for (const GhostReport::Column& column : ghosts.columns) {
+      html << "<td class=\"number\">" << number(energy_of(column), 3) << "</td>";
+    }
+    html << rest << "</tr>\n";
+  };
+  for (std::size_t k = 0; k < ghosts.pairs.size(); ++k) {
+    const petzval::GhostPair& pair = ghosts.pairs[k];
+    const bool film = pair.second == r.loaded.lens.surface_count();
+    row((film ? std::string("film") : std::to_string(r.surface_number(pair.second))) + ", then " +
+            std::to_string(r.surface_number(pair.first)),
+        [&](const GhostReport::Column& column) { return column.energies[k]; },
+        "<td class=\"number\">" + number(pair.centre.y, 3) + "</td><td class=\"number\">" +
+            number(pair.rms_radius_mm, 3) + "</td>");
+  }
+  row(
+      "all", [](const GhostReport::Column& column) { return column.glare; }, "<td></td><td></td>");
+  html << "</table></div>\n";
+}
+
 /// Conic constants and coefficients of the aspheres, one row per surface and one column per order.
 void asphere_table(std::ostream& html, const Report& r) {
   const auto& surfaces = r.loaded.prescription.surfaces;
@@ -423,7 +460,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
 }
 
 std::string lens_page(const Report& r, const petzval::LensReport& aberrations, const std::vector<LensFigure>& figures,
-                      const std::optional<LightReport>& light) {
+                      const std::optional<LightReport>& light, const GhostReport& ghosts) {
   const petzval::Lens& lens = r.loaded.lens;
   const std::string name = escaped_html(lens.name());
   std::ostringstream html;
@@ -445,6 +482,7 @@ std::string lens_page(const Report& r, const petzval::LensReport& aberrations, c
   wavefront_table(html, r, aberrations);
   third_order_table(html, r, aberrations);
   if (light) light_table(html, *light);
+  ghost_table(html, r, ghosts);
   html << "<h2>Lint</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";
   if (!r.findings.empty()) {

@@ -25,6 +25,7 @@ std::vector<LensFigure> lens_figures(const Report& report, const petzval::LensRe
 
 /// A self-contained HTML page with the figures, the numbers, the prescription and its sources. light: with coatings.
 std::string lens_page(const Report& report, const petzval::LensReport& aberrations,
-                      const std::vector<LensFigure>& figures, const std::optional<LightReport>& light);
+                      const std::vector<LensFigure>& figures, const std::optional<LightReport>& light,
+                      const GhostReport& ghosts);
 
 }  // namespace examples

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include "petzval/analysis/report.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/io/json.hpp"
 #include "petzval/io/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
@@ -198,6 +201,22 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
     EXPECT_NE(page.find(table), std::string::npos) << table;
   }
   EXPECT_EQ(page.find("href=\"h"), std::string::npos) << "it needs no other file";
+
+  // Ghosts of a light at 14 degrees, as the library finds them; the order of the rows is that of energies.
+  const petzval::Lens bare = petzval::with_coating(petzval::compile(petzval::read_prescription(file)), {});
+  const auto light =
+      petzval::scene_point(bare, {.field_rad = petzval::radians(14), .z = -std::numeric_limits<double>::infinity()});
+  const auto ghosts = petzval::ghost_pairs(bare, light).pairs;
+  const std::string table = page.substr(page.find(">Ghosts</h2>"), 4000);
+  const std::regex row(R"((\d+), then (\d+)</td><td class="number">([\d.e-]+)<)");
+  std::size_t k = 0;
+  for (std::sregex_iterator found(table.begin(), table.end(), row), end; found != end; ++found, ++k) {
+    ASSERT_LT(k, std::min<std::size_t>(10, ghosts.size()));
+    EXPECT_EQ((*found)[1], std::to_string(ghosts[k].second));
+    EXPECT_EQ((*found)[2], std::to_string(ghosts[k].first));
+    EXPECT_NEAR(std::stod((*found)[3]) / ghosts[k].energy, 1, 0.02);
+  }
+  EXPECT_EQ(k, 10u);
 
   run("report", {file, "--out", path("again")});
   EXPECT_EQ(read(path("again/cooke_triplet_50mm_f5.html")), page);
