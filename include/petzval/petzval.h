@@ -487,6 +487,40 @@ PETZVAL_C_API petzval_status petzval_camera_point_image(const petzval_camera* ca
                                                         const petzval_psf_options* options, petzval_psf* psf,
                                                         float* image, size_t floats);
 
+typedef struct petzval_ghosts_options {
+  size_t size;
+  double film_reflectance; /**< 0 to 1; above 0, the film is the first mirror of more pairs */
+  double tolerance;        /**< target for the relative error of energies; 0: 0.001 */
+  int32_t most_pairs;      /**< pairs of the surfaces with the highest reflectances; 0: 2000 */
+  int32_t distant;         /**< 1: the light is at infinity, and `point` the direction towards it */
+  int32_t threads;         /**< 0: 1; results are the same for every number */
+  int32_t unused;
+} petzval_ghosts_options;
+
+/** Light that the surface `second`, then the surface `first`, reflect towards the film. */
+typedef struct petzval_ghost {
+  int32_t first, second; /**< surfaces, counted from 0; the number of surfaces is the film */
+  double energy;         /**< fraction of the light that enters the first surface within its rim */
+  double error;          /**< relative, of `energy` */
+  double centre_mm[2];   /**< on the film */
+  double rms_radius_mm, peak_per_mm2;
+  int32_t caustic, unused; /**< caustic: 1 if rays cross in a part of the ghost */
+} petzval_ghost;
+
+/**
+ * Ghosts of a point of light, by exact rays for every camera.
+ *
+ * - point: 3 numbers in the frame of the camera
+ * - pairs: the brightest pairs at the primary wavelength, at most `capacity`; NULL: none
+ * - count: number of all pairs; NULL: not wanted
+ * - picture: [wavelength][row][column], rows from the top of the upright picture: irradiances for a light whose
+ * irradiance at the front vertex, across the beam, is 1; NULL: none
+ * - floats: floats in `picture`: at least wavelengths * rows * columns
+ */
+PETZVAL_C_API petzval_status petzval_ghosts(const petzval_camera* camera, const double* point,
+                                            const petzval_ghosts_options* options, petzval_ghost* pairs,
+                                            size_t capacity, size_t* count, float* picture, size_t floats);
+
 /* ---- lens blur of layers --------------------------------------------------------------------------------------- */
 
 /**
@@ -591,6 +625,7 @@ PETZVAL_INIT(petzval_camera_options)
 PETZVAL_INIT(petzval_camera_info)
 PETZVAL_INIT(petzval_psf_options)
 PETZVAL_INIT(petzval_psf)
+PETZVAL_INIT(petzval_ghosts_options)
 PETZVAL_INIT(petzval_lens_rays_options)
 PETZVAL_INIT(petzval_lens_rays_info)
 PETZVAL_INIT(petzval_gather_options)

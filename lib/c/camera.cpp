@@ -8,6 +8,7 @@
 
 #include "handles.hpp"
 #include "petzval/analysis/psf.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 
@@ -484,5 +485,52 @@ petzval_status petzval_camera_point_image(const petzval_camera* camera, const do
     for (std::size_t i = 0; i < counts.size(); ++i) {
       image[i] = static_cast<float>(static_cast<double>(counts[i]) * found.ray_weight(i / plane));
     }
+  });
+}
+
+petzval_status petzval_ghosts(const petzval_camera* camera, const double* point, const petzval_ghosts_options* options,
+                              petzval_ghost* pairs, std::size_t capacity, std::size_t* count, float* picture,
+                              std::size_t floats) {
+  const auto clear = [&] { reset(pairs, capacity), reset(count), reset(picture, floats); };
+  return guarded(clear, [&] {
+    const CameraContents& own = *live(camera, "camera").contents;
+    const auto in = received(options, "petzval_ghosts_options");
+    const Lens& lens = own.camera.lens();
+    const Film& film = own.camera.film();
+    GhostOptions how{.film_reflectance = in.film_reflectance, .threads = in.threads == 0 ? 1 : in.threads};
+    if (in.tolerance != 0) how.tolerance = in.tolerance;
+    if (in.most_pairs < 0) bad_argument("most_pairs = " + std::to_string(in.most_pairs) + "; must be at least 0");
+    if (in.most_pairs > 0) how.max_pairs = static_cast<std::size_t>(in.most_pairs);
+    const Vec3<double> at = vector_of(&given(point, "point"));
+    const bool distant = flag(in.distant, "distant");
+    const ScenePoint light{distant ? own.frame.direction_to_lens(at) : own.frame.point_to_lens(at), distant};
+    const std::size_t wanted = picture ? lens.wavelengths_nm().size() * static_cast<std::size_t>(film.columns) *
+                                             static_cast<std::size_t>(film.rows)
+                                       : 0;
+    if (floats < wanted) {
+      throw Failure{PETZVAL_TOO_SMALL,
+                    "floats = " + std::to_string(floats) + "; must be at least " + std::to_string(wanted)};
+    }
+    if (pairs || count) {
+      const Ghosts found = ghost_pairs(lens, light, how);
+      for (std::size_t i = 0; pairs && i < std::min(capacity, found.pairs.size()); ++i) {
+        const GhostPair& pair = found.pairs[i];
+        pairs[i] = {static_cast<std::int32_t>(pair.first),
+                    static_cast<std::int32_t>(pair.second),
+                    pair.energy,
+                    pair.error,
+                    {pair.centre.x, pair.centre.y},
+                    pair.rms_radius_mm,
+                    pair.peak_per_mm2,
+                    pair.caustic,
+                    0};
+      }
+      if (count) *count = found.pairs.size();
+    }
+    if (!picture) return;
+    std::vector<Wavelength> wavelengths;
+    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) wavelengths.emplace_back(w);
+    std::fill_n(picture, wanted, 0.0f);
+    add_ghosts(lens, light, film, wavelengths, {picture, wanted}, how);
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +17,7 @@
 #include "petzval/analysis/report.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/io/json.hpp"
 #include "petzval/petzval.h"
 #include "petzval/pupil/apertures.hpp"
@@ -327,6 +329,51 @@ TEST(CInterface, ImagesOfPointsContainTheThroughput) {
   EXPECT_LT(psf.centroid_mm[1], -5);
   EXPECT_EQ(petzval_camera_point_image(camera.get(), point.data(), &options, &psf, image.data(), 100),
             PETZVAL_TOO_SMALL);
+}
+
+TEST(CInterface, GhostsEqualTheLibrary) {
+  const LensHandle lens = focused();
+  petzval_film film = petzval_film_init();
+  film.columns = 60, film.rows = 40;
+  petzval_camera_options mitsuba = petzval_camera_options_init();
+  mitsuba.frame = PETZVAL_FRAME_MITSUBA;
+  const CameraHandle camera = create_camera(lens, &film, &mitsuba);
+  const petzval::Camera same = same_camera();
+  const petzval::ScenePoint light{{200, 300, -2000}, true};
+  petzval::Film small = same.film();
+  small.columns = 60, small.rows = 40;
+  const auto expected = petzval::ghost_pairs(same.lens(), light, {.tolerance = 1e-2}).pairs;
+  const petzval::Wavelength primary[1];
+  std::vector<float> irradiance(60 * 40), picture(60 * 40, -1);
+  petzval::add_ghosts(same.lens(), light, small, primary, irradiance);
+
+  // Mitsuba looks along +z with +x to the left.
+  const std::array<double, 3> point{-200, 300, 2000};
+  petzval_ghosts_options options = petzval_ghosts_options_init();
+  options.distant = 1, options.tolerance = 1e-2, options.threads = 2;
+  std::array<petzval_ghost, 4> pairs;
+  std::size_t count = 0;
+  const auto ghosts = [&](std::size_t floats) {
+    return petzval_ghosts(camera.get(), point.data(), &options, pairs.data(), pairs.size(), &count, picture.data(),
+                          floats);
+  };
+  ASSERT_EQ(ghosts(picture.size()), PETZVAL_OK) << petzval_message();
+  ASSERT_EQ(count, expected.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(pairs[i].first), expected[i].first);
+    EXPECT_EQ(static_cast<std::size_t>(pairs[i].second), expected[i].second);
+    EXPECT_NEAR(pairs[i].energy / expected[i].energy, 1, 1e-9);
+    EXPECT_NEAR(pairs[i].centre_mm[0], expected[i].centre.x, 1e-6);
+  }
+  const float most = *std::ranges::max_element(irradiance);
+  EXPECT_GT(most, 0);
+  for (std::size_t i = 0; i < picture.size(); ++i) EXPECT_NEAR(picture[i], irradiance[i], 1e-5f * most);
+
+  EXPECT_EQ(ghosts(picture.size() - 1), PETZVAL_TOO_SMALL);
+  EXPECT_EQ(count, 0u);
+  EXPECT_EQ(picture[0], 0);
+  options.film_reflectance = 2;
+  EXPECT_EQ(ghosts(picture.size()), PETZVAL_REFUSED);
 }
 
 TEST(CInterface, ChosenModelMeetsTheRequirements) {
