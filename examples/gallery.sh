@@ -402,6 +402,21 @@ petzval choose double_gauss_100mm_f2_28deg --f-number 2 --near 2000 --far inf --
 END
 }
 
+ghosts() {
+  section ghosts "Ghosts" "Light of the sun, 9 degrees to the right and 6 above the axis, that two surfaces of a double Gauss reflect to the film. Six
+blades at f/5.6 give the ghosts their corners. The numbers are irradiances, which add to a picture in the same unit." halves
+  sun="petzval ghosts double_gauss_100mm_f2_28deg --light 9,6 --f-number 5.6 --blades 6 --wavelengths visible --size 600x400"
+  picture ghosts/none/ghosts.png "Without coatings" "Ghosts hold 0.24 % of the light that enters the first surface within its rim; the
+image of the sun holds 4.8 %. The table is <a href=\"ghosts/none/ghosts.txt\">ghosts.txt</a>." <<END
+$sun --out ghosts/none
+END
+  also ghosts/none/double_gauss_100mm_f2_28deg_ghosts.svg "The paths" "Rays of the five brightest pairs of surfaces."
+  picture ghosts/mgf2/ghosts.png "One layer of magnesium fluoride" "A quarter wave at 550 nm on each surface to air reflects violet and red. Ghosts hold
+0.008 % of the light: the picture is 30 times as bright as it would be beside the first." <<END
+$sun --coatings mgf2 --out ghosts/mgf2
+END
+}
+
 pictures() {
   scenes
   blurred
@@ -411,6 +426,7 @@ pictures() {
   wu_designs
   wu
   bokeh
+  ghosts
   designs
 }
 
