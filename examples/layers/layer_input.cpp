@@ -258,7 +258,7 @@ std::string LayerInput::file() const {
 void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool failed) const {
   const bool unit_given = !flags_.depth_unit.empty() || flags_.near_mm > 0;
   if (scene_ || (unit_given && !failed) || nearest_mm >= std::abs(focal_length_mm)) return;
-  // The holdout, if it alone is too near.
+  // Names the file of the holdout if its depths are nearer.
   float nearest = std::numeric_limits<float>::infinity();
   for (const FragmentLists::Fragment& f : lists_.fragments) nearest = std::min(nearest, f.depth_mm);
   const bool by_holdout = !flags_.holdout.empty() && static_cast<double>(nearest) > nearest_mm;

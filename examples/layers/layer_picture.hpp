@@ -26,7 +26,7 @@ double threshold_of(const petzval::LayerSet& layers, bool of_file);
 /// The colours of a blurred image.
 petzval::RgbImage colours_of(const petzval::BlurredImage& picture);
 
-/// The first layer within the picture: what a pinhole sees.
+/// The layers within the picture, composited as a pinhole sees them.
 petzval::RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera);
 
 /// The mean over squares of side x side pixels.

@@ -65,7 +65,7 @@ struct GhostReport {
   std::vector<petzval::GhostPair> pairs{};  ///< the ten brightest without coatings
   std::vector<Column> columns{};            ///< with energies of `pairs`
   std::size_t left_out = 0;                 ///< number of pairs that were not computed
-  std::string failure{};                    ///< the reason why there are none
+  std::string failure{};                    ///< the reason if ghosts cannot be computed
 };
 
 /// The ghosts without coatings, with one layer of magnesium fluoride, and with the coatings of `light` if there are

@@ -7,11 +7,6 @@
 #include <glm/geometric.hpp>
 
 namespace petzval::ghosts_detail {
-namespace {
-
-double cross(const Vec2<double>& a, const Vec2<double>& b) noexcept { return a.x * b.y - a.y * b.x; }
-
-}  // namespace
 
 void AreaRaster::add(std::span<const Vec2<double>> polygon, double energy, std::size_t first,
                      std::size_t last) noexcept {

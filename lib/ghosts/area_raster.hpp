@@ -10,6 +10,8 @@
 
 namespace petzval::ghosts_detail {
 
+inline double cross(const Vec2<double>& a, const Vec2<double>& b) noexcept { return a.x * b.y - a.y * b.x; }
+
 /// A raster of sums over pixels of polygons with uniform density, exact in area.
 ///
 /// Edges are accumulated as differences along rows, so that a polygon costs time by its circumference. A polygon

@@ -36,7 +36,7 @@ class Splitter {
     Contact contact;
     if (surfaces_.meet(0, true, first.origin, first.direction, true, contact) != RayFate::transmitted) return false;
     first.wave = Wave::along(first.direction);
-    least_ = 1e-5, energy_ = energy;
+    energy_ = energy;
     branches_ = {first};
     while (!branches_.empty()) {
       const Branch branch = branches_.back();
@@ -50,10 +50,11 @@ class Splitter {
 
  private:
   void follow(Branch branch) {
+    constexpr double least = 1e-5;
     const std::size_t count = surfaces_.count();
     for (;;) {
       const double before = branch.wave.power();
-      if (branch.reflections > 2 && before < least_) return end(ends.higher_order, before);
+      if (branch.reflections > 2 && before < least) return end(ends.higher_order, before);
       Contact contact;
       const std::size_t surface = branch.surface;
       if (surfaces_.meet(surface, branch.forward, branch.origin, branch.direction, true, contact) !=
@@ -121,7 +122,7 @@ class Splitter {
   void end(double& sum, double power) const noexcept { sum += power * energy_; }
 
   const Surfaces& surfaces_;
-  double least_ = 0, energy_ = 0;
+  double energy_ = 0;
   std::vector<Branch> branches_;
 };
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "area_raster.hpp"
 #include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
@@ -20,8 +21,6 @@
 
 namespace petzval::ghosts_detail {
 namespace {
-
-double cross(const Vec2<double>& a, const Vec2<double>& b) noexcept { return a.x * b.y - a.y * b.x; }
 
 /// Rays as a structure of arrays that owns its numbers.
 struct Rays {
@@ -122,8 +121,7 @@ class Fit {
 };
 
 /// Transmittances of the rays of a box. They vary slowly: a polynomial through some exact rays or, if it does not fit,
-/// cubic interpolation between exact rays on a grid. Rays near edges of the transmittance are
-/// traced one by one.
+/// cubic interpolation between exact rays on a grid. Near edges of the transmittance each ray is traced.
 class Transmittances {
  public:
   /// @param exact exact(at): the transmittance at a position from -1 to 1, or nullopt
@@ -204,6 +202,12 @@ class Transmittances {
 };
 
 }  // namespace
+
+Box Deposit::bounds() const noexcept {
+  Box result{corners[0], corners[0]};
+  for (const Vec2<double>& p : polygon()) result = {glm::min(result.low, p), glm::max(result.high, p)};
+  return result;
+}
 
 Entrance::Entrance(const Lens& lens, const ScenePoint& light) {
   const auto fail = [&](const std::string& what) { throw Error(lens.name() + ": light: " + what); };

@@ -47,6 +47,10 @@ struct Deposit {
   int count = 0;
   double energy = 0;      ///< for an irradiance of 1 at the front vertex, times mm^2
   bool mirrored = false;  ///< true if the map from the entrance plane to the film inverts the orientation
+
+  std::span<Vec2<double>> polygon() noexcept { return {corners.data(), static_cast<std::size_t>(count)}; }
+  std::span<const Vec2<double>> polygon() const noexcept { return {corners.data(), static_cast<std::size_t>(count)}; }
+  Box bounds() const noexcept;
 };
 
 struct Footprint {

@@ -92,11 +92,9 @@ GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double en
   for (const Deposit& deposit : light.deposits) {
     Vec2<double> sum{0, 0};
     double squares = 0;
-    for (int k = 0; k < deposit.count; ++k) {
-      const Vec2<double>& p = deposit.corners[static_cast<std::size_t>(k)];
-      sum += p, squares += glm::dot(p, p);
-      low = glm::min(low, p), high = glm::max(high, p);
-    }
+    for (const Vec2<double>& p : deposit.polygon()) sum += p, squares += glm::dot(p, p);
+    const Box bounds = deposit.bounds();
+    low = glm::min(low, bounds.low), high = glm::max(high, bounds.high);
     sum /= static_cast<double>(deposit.count), squares /= static_cast<double>(deposit.count);
     // A parallelogram has a third of the variance of its corners.
     const double own = glm::dot(sum, sum);
@@ -113,9 +111,9 @@ GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double en
   const Vec2<double> corner = (low + high - Vec2<double>(width, width)) / 2.0;
   AreaRaster raster(side, side);
   for (const Deposit& deposit : light.deposits) {
-    std::array<Vec2<double>, 6> polygon;
-    for (std::size_t k = 0; k < 6; ++k) polygon[k] = (deposit.corners[k] - corner) * scale;
-    raster.add({polygon.data(), static_cast<std::size_t>(deposit.count)}, deposit.energy, 0, side);
+    Deposit own = deposit;
+    for (Vec2<double>& p : own.polygon()) p = (p - corner) * scale;
+    raster.add(own.polygon(), own.energy, 0, side);
   }
   std::array<double, side> row;
   for (std::size_t k = 0; k < side; ++k) {
@@ -136,10 +134,7 @@ struct Cells {
 Cells cells_for(const Footprint& coarse, const Box& region, std::size_t cells, double pixel_mm, const Box& frame) {
   Cells result{coarse.lit};
   for (const Deposit& deposit : coarse.deposits) {
-    Vec2<double> low = deposit.corners[0], high = low;
-    for (const Vec2<double>& corner : std::span(deposit.corners).first(static_cast<std::size_t>(deposit.count))) {
-      low = glm::min(low, corner), high = glm::max(high, corner);
-    }
+    const auto [low, high] = deposit.bounds();
     const Vec2<double> size = high - low, seen = glm::min(high, frame.high) - glm::max(low, frame.low);
     if (seen.x < 0 || seen.y < 0) continue;
     result.energy += deposit.energy * (size.x > 0 ? seen.x / size.x : 1) * (size.y > 0 ? seen.y / size.y : 1);
@@ -248,13 +243,11 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
         lists[k].resize((rows + band - 1) / band);
         for (std::uint32_t m = 0; m < footprint.deposits.size(); ++m) {
           Deposit& deposit = footprint.deposits[m];
-          double low = std::numeric_limits<double>::infinity(), high = -low;
-          for (Vec2<double>& corner : std::span(deposit.corners).first(static_cast<std::size_t>(deposit.count))) {
-            corner = at.raster({corner.x, corner.y});
-            low = std::min(low, corner.y), high = std::max(high, corner.y);
-          }
+          for (Vec2<double>& corner : deposit.polygon()) corner = at.raster({corner.x, corner.y});
+          const Box bounds = deposit.bounds();
           // A narrow deposit is widened by less than a pixel.
-          const double first = std::max(low - 1, 0.0), last = std::min(high + 1, static_cast<double>(rows) - 0.5);
+          const double first = std::max(bounds.low.y - 1, 0.0),
+                       last = std::min(bounds.high.y + 1, static_cast<double>(rows) - 0.5);
           if (!(first <= last)) continue;
           for (std::size_t b = static_cast<std::size_t>(first) / band; b <= static_cast<std::size_t>(last) / band;
                ++b) {
@@ -267,7 +260,7 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
           if (footprints[k].deposits.empty()) continue;
           for (const std::uint32_t m : lists[k][first / band]) {
             const Deposit& deposit = footprints[k].deposits[m];
-            raster.add({deposit.corners.data(), static_cast<std::size_t>(deposit.count)}, deposit.energy, first, last);
+            raster.add(deposit.polygon(), deposit.energy, first, last);
           }
         }
       });

@@ -179,7 +179,8 @@ class Reader {
     }
 
     const Imath::Box2i window = header.dataWindow(), &display = header.displayWindow();
-    size_part(part, window, most_in_a_byte(header.compression()));
+    const std::size_t pixels_read = size_part(part, window, most_in_a_byte(header.compression()));
+    for (auto& [name, values] : part.channels) values.resize(pixels_read);
     const Imath::V2i before = display.min - window.min, after = window.max - display.max;
     if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
     Imf::InputPart in(file_, index);
@@ -187,28 +188,28 @@ class Reader {
     in.readPixels(window.min.y, window.max.y);
     if (window_ == ExrWindow::data || display == window) return part;
 
-    ExrPart whole = part;
-    whole.margin_x = whole.margin_y = 0;
-    size_part(whole, display, 1 << 14);
+    const int read_width = part.width;
+    part.margin_x = part.margin_y = 0;
+    const std::size_t pixels = size_part(part, display, 1 << 14);
     const Imath::V2i low = {std::max(display.min.x, window.min.x), std::max(display.min.y, window.min.y)},
                      high = {std::min(display.max.x, window.max.x), std::min(display.max.y, window.max.y)};
-    for (auto& [name, to] : whole.channels) {
-      std::ranges::fill(to, 0.0f);
-      const std::vector<float>& from = part.channels.at(name);
-      const auto at = [&](const Imath::Box2i& box, int width, int y) {
-        return std::ptrdiff_t{y - box.min.y} * width + low.x - box.min.x;
-      };
+    const auto at = [&](const Imath::Box2i& box, int width, int y) {
+      return std::ptrdiff_t{y - box.min.y} * width + low.x - box.min.x;
+    };
+    for (auto& [name, values] : part.channels) {
+      std::vector<float> shown(pixels);
       for (int y = low.y; low.x <= high.x && y <= high.y; ++y) {
-        std::copy_n(from.begin() + at(window, part.width, y), high.x - low.x + 1,
-                    to.begin() + at(display, whole.width, y));
+        std::copy_n(values.begin() + at(window, read_width, y), high.x - low.x + 1,
+                    shown.begin() + at(display, part.width, y));
       }
+      values = std::move(shown);
     }
-    return whole;
+    return part;
   }
 
  private:
-  /// Makes room for the pixels of a window.
-  void size_part(ExrPart& part, const Imath::Box2i& window, std::uint64_t values_in_a_byte) {
+  /// Sets the size of a part to a window, and returns the number of pixels.
+  std::size_t size_part(ExrPart& part, const Imath::Box2i& window, std::uint64_t values_in_a_byte) {
     const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
     const auto height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
     // In this order no product overflows, because sides are below 2^32.
@@ -224,7 +225,7 @@ class Reader {
     }
     left_ -= values;
     part.width = static_cast<int>(width), part.height = static_cast<int>(height);
-    for (auto& [name, pixels] : part.channels) pixels.resize(static_cast<std::size_t>(width * height));
+    return static_cast<std::size_t>(width * height);
   }
 
   std::filesystem::path path_;

@@ -159,8 +159,8 @@ class BlurNode {
     return frame_.second;
   }
 
-  /// The pixels of a region from the top row down; beyond the edges of the image, its edge pixels. None of an empty
-  /// image.
+  /// The pixels of a region from the top row down; beyond the edges of the image, its edge pixels. Empty if the
+  /// image has no pixels.
   std::vector<float> fetched(Clip clip, double time, const Rect& region, int channels) {
     const Image image = host_.image(clip, time, region);
     const Rect& b = image.bounds;

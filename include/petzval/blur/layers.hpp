@@ -113,11 +113,9 @@ struct FragmentLists {
 
 /// Refuses a deep image that LayerSet::peel_fragments() refuses.
 ///
-/// @param where    begins the message: the name of the image
+/// @param where    name of the image, with which messages begin
 /// @param colours  false: the image is a holdout, whose colours are not used
-/// @throws Error   with the column and the row, if the lists are inconsistent, an alpha is outside 0 to 1 or a colour
-/// is
-///                 NaN
+/// @throws Error   if the lists are inconsistent; with column and row, if an alpha is outside 0 to 1 or a colour is NaN
 PETZVAL_API void check_fragments(const FragmentLists& lists, const std::string& where, bool colours = true);
 
 /// The samples of a deep image behind a holdout of the same size, as a pinhole sees the image. Composited, they give

@@ -87,14 +87,15 @@ PETZVAL_API Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const 
 /// @param options      as in ghost_pairs(); `wavelength` is ignored
 /// @throws Error       as ghost_pairs(); if the film has no area or the pictures have another size
 ///
-/// Accuracy: edges within 0.2 pixels, energy within 1 % of each ghost; a ghost of uniform irradiance is flat within
+/// Accuracy: edges within 0.2 pixels, energy within 1 % of each ghost that holds more than 1e-4 of the light of all
+/// ghosts in the picture; a ghost of uniform irradiance is flat within
 /// 1e-5 (tests/ghosts). Elsewhere the irradiance has steps of about 1 %.
 PETZVAL_API void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film,
                             std::span<const Wavelength> wavelengths, std::span<float> pictures,
                             const GhostOptions& options = {});
 
-/// The fate of the light that enters the first surface within its rim, as fractions. A film that reflects takes the
-/// rest of the light that reaches it.
+/// The fate of the light that enters the first surface within its rim, as fractions. A reflecting film takes the
+/// light that it does not reflect.
 struct GhostAudit {
   double image = 0;         ///< taken by the film without a reflection at a refracting surface
   double ghosts = 0;        ///< taken after two reflections, from ghost_pairs()

@@ -76,7 +76,7 @@ struct ExrPart {
 ///               the file cannot be written
 PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
 
-/// The pixels that are read: those of the data window, or of the display window with 0 outside the data window.
+/// The window of an EXR file whose pixels are read. Pixels of `display` outside the data window are 0.
 enum class ExrWindow { data, display };
 
 /// Reads all parts of an EXR file with scan lines or tiles.
