@@ -184,7 +184,7 @@ class Pictures {
 int commands::ghosts(int argc, char** argv) {
   Options options;
   *options.setup.focus_mm = infinity;
-  bool layers = false;
+  bool layers = false, starburst = false;
   examples::App app(
       "Computes the ghosts of a light: light that two surfaces of the lens reflect towards the film. Energies are "
       "fractions of the light that enters the first surface within its rim, at the primary wavelength. The picture "
@@ -207,6 +207,8 @@ int commands::ghosts(int argc, char** argv) {
   app.add_option("--pairs", options.pairs, "number of pairs, the brightest ones, or all")
       ->type_name("all|N")
       ->default_str("all");
+  app.add_flag("--starburst", starburst,
+               "adds the light that the edges of the pupil diffract: spikes of the blades about the image of the light");
   app.add_flag("--pair-layers", layers, "one layer of ghosts.exr for each pair: pair_I_J.R, .G and .B");
   examples::add_number(app, "--film-reflectance", options.film_reflectance, {0, 1, "a number from 0 to 1"},
                        "reflectance of the film, which is then the first mirror of more pairs");
@@ -257,6 +259,7 @@ int commands::ghosts(int argc, char** argv) {
     for (const GhostPair& pair : ghosts.pairs) {
       if (!all) ghost.only.push_back({pair.first, pair.second});
     }
+    ghost.starburst = starburst;
     const petzval::RgbImage image = pictures.of(light.point, ghost);
 
     Json report{{"lens", loaded.id},

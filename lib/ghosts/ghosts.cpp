@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "ghost_paths.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "starburst.hpp"
 
 namespace petzval {
 namespace ghosts_detail {
@@ -80,6 +82,8 @@ namespace {
 
 /// Most cells along a side of the region of a pair.
 constexpr std::size_t most_cells = 256;
+/// Rows of a picture that are drawn by one thread.
+constexpr std::size_t band = 16;
 
 /// Moments, peak and caustic of a footprint.
 GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double entering) {
@@ -149,6 +153,38 @@ Cells cells_for(const Footprint& coarse, const Box& region, std::size_t cells, d
   const double wanted = std::max({by_edge, by_mismatch, static_cast<double>(cells)}) * std::max(part.x, part.y);
   result.count = static_cast<std::size_t>(std::clamp(wanted, 16.0, static_cast<double>(most_cells)));
   return result;
+}
+
+/// Draws footprints on a film. Each deposit is drawn in bands of rows, by one thread at a time.
+void draw(AreaRaster& raster, const Film& film, std::size_t count, int threads,
+          const std::function<Footprint(std::size_t)>& footprint_of) {
+  const auto rows = static_cast<std::size_t>(film.rows);
+  std::vector<Footprint> footprints(count);
+  std::vector<std::vector<std::vector<std::uint32_t>>> lists(count);  // deposits by band
+  parallel_for(count, 1, threads, [&](std::size_t k, std::size_t) {
+    footprints[k] = footprint_of(k);
+    lists[k].resize((rows + band - 1) / band);
+    for (std::uint32_t m = 0; m < footprints[k].deposits.size(); ++m) {
+      Deposit& deposit = footprints[k].deposits[m];
+      for (Vec2<double>& corner : deposit.polygon()) corner = film.raster({corner.x, corner.y});
+      const Box bounds = deposit.bounds();
+      // A narrow deposit is widened by less than a pixel.
+      const double first = std::max(bounds.low.y - 1, 0.0),
+                   last = std::min(bounds.high.y + 1, static_cast<double>(rows) - 0.5);
+      if (!(first <= last)) continue;
+      for (std::size_t b = static_cast<std::size_t>(first) / band; b <= static_cast<std::size_t>(last) / band; ++b) {
+        lists[k][b].push_back(m);
+      }
+    }
+  });
+  parallel_for(rows, band, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = 0; k < count; ++k) {
+      for (const std::uint32_t m : lists[k][first / band]) {
+        const Deposit& deposit = footprints[k].deposits[m];
+        raster.add(deposit.polygon(), deposit.energy, first, last);
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -228,42 +264,19 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
     for (Cells& c : cells) {
       if (c.energy < 1e-4 * energy) c.count = std::min<std::size_t>(c.count, 48);
     }
-    // Groups limit the memory; the order of deposits does not depend on threads.
-    constexpr std::size_t group = 64, band = 16;
+    // Groups limit the memory; the order of deposits does not depend on threads. The starburst is a group of its own.
+    constexpr std::size_t group = 64;
     for (std::size_t begin = 0; begin < paths.pairs.size(); begin += group) {
-      const std::size_t size = std::min(group, paths.pairs.size() - begin);
-      std::vector<Footprint> footprints(size);
-      std::vector<std::vector<std::vector<std::uint32_t>>> lists(size);  // deposits by band of rows
-      parallel_for(size, 1, options.threads, [&](std::size_t k, std::size_t) {
+      draw(raster, at, std::min(group, paths.pairs.size() - begin), options.threads, [&](std::size_t k) {
         const Cells& c = cells[begin + k];
-        if (c.count == 0) return;
-        Footprint& footprint = footprints[k];
-        footprint = path_of(lens, paths.pairs[begin + k])
-                        .footprint(paths.entrance, c.box, c.count, surfaces, own.wavelength, at, frame);
-        lists[k].resize((rows + band - 1) / band);
-        for (std::uint32_t m = 0; m < footprint.deposits.size(); ++m) {
-          Deposit& deposit = footprint.deposits[m];
-          for (Vec2<double>& corner : deposit.polygon()) corner = at.raster({corner.x, corner.y});
-          const Box bounds = deposit.bounds();
-          // A narrow deposit is widened by less than a pixel.
-          const double first = std::max(bounds.low.y - 1, 0.0),
-                       last = std::min(bounds.high.y + 1, static_cast<double>(rows) - 0.5);
-          if (!(first <= last)) continue;
-          for (std::size_t b = static_cast<std::size_t>(first) / band; b <= static_cast<std::size_t>(last) / band;
-               ++b) {
-            lists[k][b].push_back(m);
-          }
-        }
+        return c.count == 0 ? Footprint{}
+                            : path_of(lens, paths.pairs[begin + k])
+                                  .footprint(paths.entrance, c.box, c.count, surfaces, own.wavelength, at, frame);
       });
-      parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = 0; k < size; ++k) {
-          if (footprints[k].deposits.empty()) continue;
-          for (const std::uint32_t m : lists[k][first / band]) {
-            const Deposit& deposit = footprints[k].deposits[m];
-            raster.add(deposit.polygon(), deposit.energy, first, last);
-          }
-        }
-      });
+    }
+    if (options.starburst) {
+      draw(raster, at, 1, options.threads,
+           [&](std::size_t) { return starburst(lens, paths.entrance, light, surfaces, own.wavelength, at, frame); });
     }
     const double per_pixel = static_cast<double>(columns * rows) / at.area_mm2();
     parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {

@@ -46,6 +46,7 @@ class PETZVAL_API Surfaces {
   Surfaces(const Lens& lens, Wavelength wavelength, double film_reflectance);
 
   std::size_t count() const noexcept { return rows_.size() - 1; }
+  double wavelength_nm() const noexcept { return nm_; }
 
   /// Finds where the line of a ray meets a surface, or the film.
   /// @param forward true if light travels in the order of the surfaces

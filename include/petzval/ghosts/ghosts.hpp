@@ -24,6 +24,7 @@ struct GhostOptions {
   std::vector<std::array<std::size_t, 2>> only{};
   /// Largest number of pairs. The pairs of the surfaces with the highest reflectances at normal incidence are kept.
   std::size_t max_pairs = 2000;
+  bool starburst = false;  ///< add_ghosts() also adds the light that the edges of the pupil diffract
   /// Target for the relative error of the energy of a pair; reached with at most 256^2 rays.
   double tolerance = 1e-3;
   int threads = 1;  ///< at least 1; the number does not change results
@@ -79,6 +80,10 @@ PETZVAL_API Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const 
 /// Normalisation::irradiance. Each ray deposits its energy over its cell by its exact derivatives, integrated over the
 /// pixels; no two rays are joined.
 ///
+/// A starburst is the mean of Fraunhofer's diffraction over its fringes, for uniform light in the pupil, about the
+/// image of the light; a sixth of the light of the image of a round pupil. It begins at the first dark ring, where the
+/// mean is right: the image itself is not added. Its fringes, of wavelength times f-number, are smaller than pixels.
+///
 /// @param lens         the lens
 /// @param light        as in ghost_pairs()
 /// @param film         the film; its margin is ignored. A reflecting film is taken as upright at Lens::film_z()
@@ -89,7 +94,9 @@ PETZVAL_API Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const 
 ///
 /// Accuracy: edges within 0.2 pixels, energy within 1 % of each ghost that holds more than 1e-4 of the light of all
 /// ghosts in the picture; a ghost of uniform irradiance is flat within
-/// 1e-5 (tests/ghosts). Elsewhere the irradiance has steps of about 1 %.
+/// 1e-5 (tests/ghosts). Elsewhere the irradiance has steps of about 1 %. Starbursts: 3 % of Fraunhofer's light in rings.
+///
+/// Limitations: ghosts have no starbursts.
 PETZVAL_API void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film,
                             std::span<const Wavelength> wavelengths, std::span<float> pictures,
                             const GhostOptions& options = {});
