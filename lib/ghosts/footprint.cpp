@@ -368,21 +368,21 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
                               fates.data(), nullptr, {.wavelengths = {.all = wavelength}, .apertures = false});
 
   std::vector<Image> images(cells * cells);
-  const Vec3<double> normal = film.normal(), right = film.right(), up = film.up();
+  const Vec3<double> normal = film.normal(), right = film.right(), up = film.up(), middle = film.position({});
   for (std::size_t k = 0; k < count; ++k) {
     const Ray<double> ray = rays[k];
     const Vec3<double>& o = ray.origin;
     const Vec3<double>& d = ray.direction;
     const double along = glm::dot(d, normal);
     if (fates[k] != RayFate::transmitted || !(along * film_sense_ > 0)) continue;
-    const double t = glm::dot(film.position({}) - o, normal) / along;
-    const FilmPoint at = film.point(o + d * t);
+    const double t = glm::dot(middle - o, normal) / along;
+    const Vec3<double> at = o + d * t - middle;
     const auto by = [&](const Ray<double>& dot) {
       const Vec3<double> moved = dot.origin + dot.direction * t;
       const Vec3<double> on_film = moved - d * (glm::dot(moved, normal) / along);
       return Vec2<double>(glm::dot(on_film, right), glm::dot(on_film, up));
     };
-    const Image image{{at.x, at.y}, by(by_u[k]), by(by_v[k]), true};
+    const Image image{{glm::dot(at, right), glm::dot(at, up)}, by(by_u[k]), by(by_v[k]), true};
     const double sum = image.at.x + image.at.y + image.u.x + image.u.y + image.v.x + image.v.y;
     if (std::isfinite(sum)) images[lit[k]] = image;
   }

@@ -132,6 +132,13 @@ struct Cells {
   Box box;
   std::size_t count = 0;  ///< 0: no light reaches the frame
   double energy = 0;      ///< in the frame, estimated
+
+  /// Adds the cells of another wavelength.
+  void include(const Cells& other) {
+    if (other.count == 0) return;
+    box = count == 0 ? other.box : Box{glm::min(box.low, other.box.low), glm::max(box.high, other.box.high)};
+    count = std::max(count, other.count), energy += other.energy;
+  }
 };
 
 /// Cells with which the edges of deposits are wrong by at most 0.2 pixels, from a coarse footprint of a region.
@@ -243,27 +250,37 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
   const Box frame{{at.shift_x_mm - at.width_mm / 2, at.shift_y_mm - at.height_mm / 2},
                   {at.shift_x_mm + at.width_mm / 2, at.shift_y_mm + at.height_mm / 2}};
   const double pixel_mm = std::min(at.width_mm / at.columns, at.height_mm / at.rows);
-  for (std::size_t w = 0; w < wavelengths.size(); ++w) {
-    GhostOptions own = options;
-    own.wavelength = wavelengths[w];
-    const GhostPaths paths(lens, light, own);
-    const Surfaces surfaces(lens, own.wavelength, own.film_reflectance);
-    AreaRaster raster(columns, rows);
-    // The cells of each pair, from a coarse footprint.
-    std::vector<Cells> cells(paths.pairs.size());
+  if (wavelengths.empty()) return;
+  const auto by_nm = [&](const Wavelength& w) {
+    return w.in_nm() ? *w.in_nm() : lens.wavelengths_nm()[lens.wavelength_index(w)];
+  };
+  const auto [shortest, longest] = std::ranges::minmax(wavelengths, {}, by_nm);
+  GhostOptions own = options;
+  own.wavelength = shortest;
+  const GhostPaths paths(lens, light, own);
+  // The cells of each pair, from coarse footprints of the outer wavelengths.
+  std::vector<Cells> cells(paths.pairs.size());
+  std::vector<Wavelength> outer{shortest};
+  if (by_nm(longest) > by_nm(shortest)) outer.push_back(longest);
+  for (const Wavelength& w : outer) {
+    const Surfaces surfaces(lens, w, options.film_reflectance);
     parallel_for(cells.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
       const LightPath path = path_of(lens, paths.pairs[k]);
-      const Box box = path.region(paths.entrance, own.wavelength);
+      const Box box = path.region(paths.entrance, w);
       constexpr std::size_t coarse = 24;
-      cells[k] = cells_for(path.footprint(paths.entrance, box, coarse, surfaces, own.wavelength, at, frame), box,
-                           coarse, pixel_mm, frame);
+      const Footprint footprint = path.footprint(paths.entrance, box, coarse, surfaces, w, at, frame);
+      cells[k].include(cells_for(footprint, box, coarse, pixel_mm, frame));
     });
-    // Few cells suffice for pairs that spread their light far beyond the frame.
-    double energy = 0;
-    for (const Cells& c : cells) energy += c.energy;
-    for (Cells& c : cells) {
-      if (c.energy < 1e-4 * energy) c.count = std::min<std::size_t>(c.count, 48);
-    }
+  }
+  // Few cells suffice for pairs that spread their light far beyond the frame.
+  double energy = 0;
+  for (const Cells& c : cells) energy += c.energy;
+  for (Cells& c : cells) {
+    if (c.energy < 1e-4 * energy) c.count = std::min<std::size_t>(c.count, 48);
+  }
+  for (std::size_t w = 0; w < wavelengths.size(); ++w) {
+    const Surfaces surfaces(lens, wavelengths[w], options.film_reflectance);
+    AreaRaster raster(columns, rows);
     // Groups limit the memory; the order of deposits does not depend on threads. The starburst is a group of its own.
     constexpr std::size_t group = 64;
     for (std::size_t begin = 0; begin < paths.pairs.size(); begin += group) {
@@ -271,12 +288,12 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
         const Cells& c = cells[begin + k];
         return c.count == 0 ? Footprint{}
                             : path_of(lens, paths.pairs[begin + k])
-                                  .footprint(paths.entrance, c.box, c.count, surfaces, own.wavelength, at, frame);
+                                  .footprint(paths.entrance, c.box, c.count, surfaces, wavelengths[w], at, frame);
       });
     }
     if (options.starburst) {
       draw(raster, at, 1, options.threads,
-           [&](std::size_t) { return starburst(lens, paths.entrance, light, surfaces, own.wavelength, at, frame); });
+           [&](std::size_t) { return starburst(lens, paths.entrance, light, surfaces, wavelengths[w], at, frame); });
     }
     const double per_pixel = static_cast<double>(columns * rows) / at.area_mm2();
     parallel_for(rows, band, options.threads, [&](std::size_t first, std::size_t last) {
