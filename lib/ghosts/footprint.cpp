@@ -155,6 +155,18 @@ class Transmittances {
   double error_ = 0;
 };
 
+/// Corners of cells, [row * (cells + 1) + column].
+std::vector<Vec2<double>> corners_of(const Box& box, std::size_t cells) {
+  const std::size_t side = cells + 1;
+  const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
+  std::vector<Vec2<double>> result;
+  result.reserve(side * side);
+  for (std::size_t i = 0; i < side * side; ++i) {
+    result.push_back(box.low + step * Vec2<double>(static_cast<double>(i % side), static_cast<double>(i / side)));
+  }
+  return result;
+}
+
 }  // namespace
 
 Box Deposit::bounds() const noexcept {
@@ -228,15 +240,11 @@ LightPath::LightPath(const Lens& lens, std::vector<lens_detail::Passage> path)
       lens_(lens_detail::along(lens, path_)),
       film_sense_(lens.light_direction(lens.surface_count())) {}
 
-std::vector<double> LightPath::margins(const Entrance& entrance, const Box& box, std::size_t cells,
+std::vector<double> LightPath::margins(const Entrance& entrance, std::span<const Vec2<double>> positions,
                                        Wavelength wavelength) const {
-  const std::size_t side = cells + 1, count = side * side;
+  const std::size_t count = positions.size();
   Rays rays(count);
-  const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
-  for (std::size_t i = 0; i < count; ++i) {
-    rays.set(i,
-             entrance.ray(box.low + step * Vec2<double>(static_cast<double>(i % side), static_cast<double>(i / side))));
-  }
+  for (std::size_t i = 0; i < count; ++i) rays.set(i, entrance.ray(positions[i]));
   std::vector<double> result(count);
   trace_detail::clearances<double>(lens_, count, rays.arrays(), result.data(),
                                    {.wavelengths = {.all = wavelength}, .apertures = false});
@@ -249,33 +257,32 @@ std::vector<double> LightPath::margins(const Entrance& entrance, const Box& box,
 }
 
 Box LightPath::region(const Entrance& entrance, Wavelength wavelength) const {
-  constexpr std::size_t cells = 24, side = cells + 1;
+  // Two dense lines through the middle meet rings that lie between the corners.
+  constexpr std::size_t cells = 24, line = 256;
   Box box = entrance.box();
   for (int round = 0; round < 6; ++round) {
-    const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+    std::vector<Vec2<double>> positions = corners_of(box, cells);
+    for (std::size_t k = 0; k <= line; ++k) {
+      const Vec2<double> at = box.low + (box.high - box.low) * (static_cast<double>(k) / line),
+                         middle = (box.low + box.high) / 2.0;
+      positions.emplace_back(at.x, middle.y), positions.emplace_back(middle.x, at.y);
+    }
+    const std::vector<double> margin = margins(entrance, positions, wavelength);
     const auto best = static_cast<std::size_t>(std::ranges::max_element(margin) - margin.begin());
-    std::array<std::size_t, 2> low{best % side, best / side}, high = low;
+    Box lit{positions[best], positions[best]};
     for (std::size_t i = 0; i < margin.size(); ++i) {
-      if (!(margin[i] > 0)) continue;
-      for (const auto& [axis, at] : {std::pair{0, i % side}, std::pair{1, i / side}}) {
-        low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
-      }
+      if (margin[i] > 0) lit = {glm::min(lit.low, positions[i]), glm::max(lit.high, positions[i])};
     }
-    const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
-    Box next = box;
-    for (const int axis : {0, 1}) {
-      next.low[axis] = box.low[axis] + step[axis] * (static_cast<double>(low[axis]) - 1.0);
-      next.high[axis] = box.low[axis] + step[axis] * (static_cast<double>(high[axis]) + 1.0);
-    }
-    if (margin[best] > 0 && high[0] - low[0] > cells / 2 && high[1] - low[1] > cells / 2) return next;
-    box = next;
-    if (round == 5) return margin[best] > 0 ? next : Box{};
+    const Vec2<double> size = box.high - box.low, step = size / static_cast<double>(cells);
+    const bool large = lit.high.x - lit.low.x > size.x / 2 && lit.high.y - lit.low.y > size.y / 2;
+    box = {lit.low - step, lit.high + step};
+    if (margin[best] > 0 && (large || round == 5)) return box;
   }
   return {};
 }
 
 double LightPath::entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const {
-  const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+  const std::vector<double> margin = margins(entrance, corners_of(box, cells), wavelength);
   const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
   double sum = 0;
   for (std::size_t i = 0; i < cells * cells; ++i) {
@@ -292,7 +299,7 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
   Footprint result;
   const Vec2<double> step = (box.high - box.low) / static_cast<double>(cells);
   if (!(step.x > 0 && step.y > 0)) return result;
-  const std::vector<double> margin = margins(entrance, box, cells, wavelength);
+  const std::vector<double> margin = margins(entrance, corners_of(box, cells), wavelength);
   std::vector<Polygon> shapes(cells * cells);
   std::vector<std::size_t> lit;
   std::vector<std::uint8_t> traced(cells * cells);
@@ -303,7 +310,7 @@ Footprint LightPath::footprint(const Entrance& entrance, const Box& box, std::si
   }
 
   // Rays through the middles, with their derivatives by the position in the cell.
-  const std::size_t count = lit.size();
+  const std::size_t count = result.cells = lit.size();
   if (count == 0) return result;
   Rays rays(count), by_u(count), by_v(count);
   const auto position = [&](std::size_t i) {

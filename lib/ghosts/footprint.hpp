@@ -55,6 +55,7 @@ struct Deposit {
 
 struct Footprint {
   std::vector<Deposit> deposits;
+  std::size_t cells = 0;  ///< number of cells whose rays pass the rims
   double energy = 0;
   double weight_error = 0;  ///< largest error of interpolated transmittances, relative to their mean
   double mismatch_mm = 0;   ///< largest distance between common edges of adjacent deposits
@@ -78,8 +79,9 @@ class LightPath {
   double entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const;
 
  private:
-  /// Distances from the rims at the corners of cells, positive inside, [row * (cells + 1) + column].
-  std::vector<double> margins(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const;
+  /// Distances of rays from the rims, positive inside, in units of the rim.
+  std::vector<double> margins(const Entrance& entrance, std::span<const Vec2<double>> positions,
+                              Wavelength wavelength) const;
 
   std::vector<lens_detail::Passage> path_;
   Lens lens_;

@@ -210,6 +210,7 @@ Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const GhostOptions
   parallel_for(paths.pairs.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
     const LightPath path = path_of(lens, paths.pairs[k]);
     const Box box = path.region(paths.entrance, options.wavelength);
+    if (!(box.high.x > box.low.x)) return;
     const auto at = [&](std::size_t cells) {
       return path.footprint(paths.entrance, box, cells, surfaces, options.wavelength, film, everywhere);
     };
@@ -218,7 +219,7 @@ Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const GhostOptions
     for (std::size_t cells = 32; cells <= most_cells; cells *= 2) {
       Footprint fine = at(cells);
       // The error falls with the square of the spacing, or with the spacing where rays are totally reflected.
-      error = fine.energy > 0 ? std::abs(fine.energy - coarse.energy) / fine.energy : 0;
+      error = fine.energy > 0 ? std::abs(fine.energy - coarse.energy) / fine.energy : 1;
       coarse = std::move(fine);
       if (error < options.tolerance) break;
     }
@@ -267,9 +268,12 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
     parallel_for(cells.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
       const LightPath path = path_of(lens, paths.pairs[k]);
       const Box box = path.region(paths.entrance, w);
-      constexpr std::size_t coarse = 24;
-      const Footprint footprint = path.footprint(paths.entrance, box, coarse, surfaces, w, at, frame);
-      cells[k].include(cells_for(footprint, box, coarse, pixel_mm, frame));
+      // Thin rings need finer cells to be seen at all.
+      for (std::size_t coarse = 24; coarse <= most_cells && box.high.x > box.low.x; coarse *= 2) {
+        const Footprint footprint = path.footprint(paths.entrance, box, coarse, surfaces, w, at, frame);
+        cells[k].include(cells_for(footprint, box, coarse, pixel_mm, frame));
+        if (footprint.cells > 0) break;
+      }
     });
   }
   // Few cells suffice for pairs that spread their light far beyond the frame.
