@@ -18,6 +18,7 @@ set(petzval_long_tests
   Cylinders.Polynomials*
   DifferentialsOf*.EveryLensEqualsExactRays
   EndlessFiles.*
+  EveryGhostAudit.*
   Exposure.EveryModelIsExactOnTheAxis
   Extremes.FieldsBeyondTheLensAreDark
   FilmIrradiance.FilmInsideTheLastSurfaceEqualsRaysInAllDirections

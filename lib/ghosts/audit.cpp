@@ -132,15 +132,26 @@ GhostAudit ghost_audit(const Lens& lens, const ScenePoint& light, const GhostOpt
   if (rays < 1) throw Error("ghost_audit: rays = 0; must be at least 1");
   const GhostPaths paths(lens, light, options);
   const Surfaces surfaces(lens, options.wavelength, options.film_reflectance);
-  const Box& box = paths.entrance.box();
+  // Half of the rays aim at the part of the front through which the image is formed: it may be a thousandth of the
+  // front.
+  std::vector<lens_detail::Passage> direct;
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) direct.push_back({i, false});
+  const Box box = paths.entrance.box(), lit = LightPath(lens, direct).region(paths.entrance, options.wavelength);
+  const auto density = [](const Box& of, const Vec2<double>& at) {
+    const Vec2<double> size = of.high - of.low;
+    const bool inside = at.x >= of.low.x && at.y >= of.low.y && at.x <= of.high.x && at.y <= of.high.y;
+    return inside && size.x * size.y > 0 ? 1 / (size.x * size.y) : 0;
+  };
   constexpr std::size_t block = 16;
   std::vector<GhostAudit> sums((rays + block - 1) / block);
   std::vector<double> entered(sums.size());
   parallel_for(rays, block, options.threads, [&](std::size_t begin, std::size_t end) {
     Splitter splitter(surfaces);
     for (std::size_t k = begin; k < end; ++k) {
-      const Vec2<double> at = box.low + (box.high - box.low) * owen_sobol(static_cast<std::uint32_t>(k), 1);
-      const double energy = paths.entrance.flux(at);
+      const Box& from = k % 2 == 1 && lit.high.x > lit.low.x ? lit : box;
+      const auto index = static_cast<std::uint32_t>(k / 2);
+      const Vec2<double> at = from.low + (from.high - from.low) * owen_sobol(index, static_cast<std::uint32_t>(k % 2));
+      const double energy = paths.entrance.flux(at) / (density(box, at) + density(lit, at));
       if (splitter.split(paths.entrance.ray(at), energy)) entered[begin / block] += energy;
     }
     sums[begin / block] = splitter.ends;
