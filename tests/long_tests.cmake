@@ -8,6 +8,7 @@ set(petzval_long_tests
   BokehControls.MapHasOneOrientationInAllModels
   BrownConrady.HasNoPoleWithinTheFilm
   BrownConrady.TermsAreBoundedAndRadiiAreMonotonic
+  BruteForce.Many*
   Camera/Batches.*catadioptric*
   Camera.SetUpIndependentOfThreads
   Certified.*

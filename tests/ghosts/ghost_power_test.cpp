@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Powers of rays that are reflected twice, against plain formulas, and of whole lenses against random splitting.
+// Powers of rays that are reflected twice, against plain formulas.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,6 @@
 
 #include "../data_lenses.hpp"
 #include "ghosts/surface_waves.hpp"
-#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/trace/trace.hpp"
 #include "plain_optics.hpp"
 
@@ -147,64 +146,6 @@ TEST(GhostPower, OfAReversedRayIsTheSame) {
     EXPECT_NEAR(Surfaces(back, {}, 0).power(reversed_path, kernel::to_kernel(from), towards).value(), power,
                 1e-12 * power + 1e-18);
   }
-}
-
-/// Rays that are reflected or refracted at random, without the library's code: the fraction that reaches the film after
-/// two reflections. Unpolarised at every surface.
-TEST(GhostPower, OfALensEqualsRandomSplitting) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const testing::PlainLens plain(lens);
-  const double angle = radians(10);
-  const V d0{0, std::sin(angle), std::cos(angle)};
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  const double rim = plain.surfaces[0].rim;
-  std::size_t entered = 0, ghosts = 0, image = 0;
-  double centre = 0;
-  for (int trial = 0; trial < 1'000'000; ++trial) {
-    // Uniform across the beam: points of a plane perpendicular to it.
-    const double x = (2 * uniform(random) - 1) * rim, y = (2 * uniform(random) - 1) * 1.2 * rim;
-    V o{x, y * std::cos(angle), -y * std::sin(angle)}, d = d0, normal;
-    const auto first = plain.meet(0, o, d, normal);
-    if (!first) continue;
-    ++entered;
-    std::size_t i = 0;
-    bool forward = true;
-    for (int reflections = 0;;) {
-      const auto hit = plain.meet(i, o, d, normal);
-      if (!hit) break;
-      o = *hit;
-      const auto& own = plain.surfaces[i];
-      const double in = forward ? own.before : own.behind, out = forward ? own.behind : own.before;
-      if (in != out) {
-        if (uniform(random) < Bare(in, out, -glm::dot(d, normal)).mean()) {
-          d = testing::thrown_back(d, normal);
-          forward = !forward;
-          ++reflections;
-        } else {
-          d = testing::bent(d, normal, in, out);
-        }
-      }
-      if (!forward && i == 0) break;
-      forward ? ++i : --i;
-      if (i < plain.surfaces.size()) continue;
-      if (d.z > 0 && reflections == 0) ++image;
-      if (d.z > 0 && reflections == 2) ++ghosts, centre += (o + d * ((plain.film_z - o.z) / d.z)).y;
-      break;
-    }
-  }
-  // The light comes from below, -y.
-  const ScenePoint light{{0, -std::sin(angle), -std::cos(angle)}, true};
-  const Ghosts found = ghost_pairs(lens, light);
-  double sum = 0, moment = 0;
-  for (const GhostPair& pair : found.pairs) sum += pair.energy, moment += pair.energy * pair.centre.y;
-  const double expected = static_cast<double>(ghosts) / static_cast<double>(entered);
-  const double noise = expected / std::sqrt(static_cast<double>(ghosts));
-  EXPECT_GT(ghosts, 1000U);
-  EXPECT_NEAR(sum, expected, 4 * noise + 0.01 * expected);
-  EXPECT_NEAR(moment / sum, centre / static_cast<double>(ghosts), 2);
-  const GhostAudit audit = ghost_audit(lens, light);
-  EXPECT_NEAR(audit.image, static_cast<double>(image) / static_cast<double>(entered), 0.005);
 }
 
 }  // namespace ghost_power_test

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -35,10 +36,24 @@ struct Bare {
   double mean() const { return (s + p) / 2; }
 };
 
-/// A coaxial lens of bare spheres and planes, as numbers.
+/// A coaxial lens of bare spheres, planes, cylinders and aspheres, as numbers.
 struct PlainLens {
   struct Surface {
     double z, curvature, rim, before, behind;
+    V curved{1, 1, 1};  ///< 0 along the axis of a cylinder
+    double conic = 0;
+    std::vector<AsphereTerm> terms{};
+
+    /// Sag and its derivative by the height of an asphere.
+    std::pair<double, double> sag(double r) const {
+      const double root = std::sqrt(1 - (1 + conic) * curvature * curvature * r * r);
+      double z_at = curvature * r * r / (1 + root), slope = curvature * r / root;
+      for (const AsphereTerm& term : terms) {
+        z_at += term.coefficient * std::pow(r, term.order);
+        slope += term.order * term.coefficient * std::pow(r, term.order - 1);
+      }
+      return {z_at, slope};
+    }
   };
   std::vector<Surface> surfaces;
   double film_z = 0;
@@ -46,7 +61,9 @@ struct PlainLens {
   explicit PlainLens(const Lens& lens) : film_z(lens.film_z()) {
     for (std::size_t i = 0; i < lens.surface_count(); ++i) {
       const LensSurface& own = lens.surfaces()[i];
-      surfaces.push_back({own.vertex_z, own.curvature, own.semi_diameter, lens.index(i), lens.index(i + 1)});
+      const V curved{own.curved_in == Section::y ? 0.0 : 1.0, own.curved_in == Section::x ? 0.0 : 1.0, 1};
+      surfaces.push_back({own.vertex_z, own.curvature, own.semi_diameter, lens.index(i), lens.index(i + 1), curved,
+                          own.conic, own.aspheric});
     }
   }
 
@@ -55,27 +72,37 @@ struct PlainLens {
   std::optional<V> meet(std::size_t i, const V& origin, const V& d, V& normal) const {
     const Surface& own = surfaces[i];
     const V p = origin - V{0, 0, own.z};
-    V at;
+    double t = 0;
     if (own.curvature == 0) {
       if (d.z == 0) return {};
-      at = p - d * (p.z / d.z);
+      t = -p.z / d.z;
       normal = {0, 0, 1};
     } else {
       const double radius = 1 / own.curvature;
-      const V centre{0, 0, radius}, from = p - centre;
-      const double b = glm::dot(from, d), c = glm::dot(from, from) - radius * radius, root = b * b - c;
-      if (root < 0) return {};
-      std::optional<double> best;
-      for (const double t : {-b - std::sqrt(root), -b + std::sqrt(root)}) {
-        const V hit = p + d * t;
-        if (std::abs(hit.z) > std::abs(radius)) continue;
-        if (!best || std::abs(hit.z) < std::abs((p + d * *best).z)) best = t;
-      }
-      if (!best) return {};
-      at = p + d * *best;
-      normal = glm::normalize(at - centre);
+      const V from = (p - V{0, 0, radius}) * own.curved, along = d * own.curved;
+      const double a = glm::dot(along, along), b = glm::dot(from, along), c = glm::dot(from, from) - radius * radius;
+      const double square = b * b - a * c;
+      if (square < 0 || a == 0) return {};
+      const double root = std::sqrt(square), first = (-b - root) / a, second = (-b + root) / a;
+      t = std::abs(p.z + first * d.z) < std::abs(p.z + second * d.z) ? first : second;
+      if (std::abs(p.z + d.z * t) > std::abs(radius)) return {};
+      normal = glm::normalize(from + along * t);
     }
-    if (std::hypot(at.x, at.y) > own.rim) return {};
+    if (own.conic != 0 || !own.terms.empty()) {
+      for (int step = 0; step < 20; ++step) {
+        const V at = p + d * t;
+        const double r = std::hypot(at.x, at.y);
+        const auto [z, slope] = own.sag(r);
+        const double by_r = r > 0 ? slope / r : 0;
+        normal = {-at.x * by_r, -at.y * by_r, 1};
+        const double change = (at.z - z) / glm::dot(normal, d);
+        t -= change;
+        if (!(std::abs(change) > 1e-12)) break;
+      }
+      normal = glm::normalize(normal);
+    }
+    const V at = p + d * t;
+    if (!(at.x * at.x + at.y * at.y <= own.rim * own.rim)) return {};
     if (glm::dot(normal, d) > 0) normal = -normal;
     return at + V{0, 0, own.z};
   }
