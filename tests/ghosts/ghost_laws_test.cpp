@@ -80,6 +80,41 @@ TEST(GhostLaws, GhostOfAPlateIsTheDirectLightTwiceDelayed) {
   }
 }
 
+TEST(GhostLaws, GhostsOfTwoPlatesAreDelayedByTheSpacesBetweenTheirSurfaces) {
+  constexpr std::array indices{1.0, 1.0, 1.5, 1.0, 1.8, 1.0}, lengths{0.0, 1.0, 5.0, 2.0, 4.0, 30.0};
+  Prescription p;
+  p.name = "two plates";
+  for (std::size_t k = 1; k < 6; ++k) {
+    p.surfaces.push_back({.thickness = lengths[k], .semi_diameter = k == 1 ? 5.0 : 80.0, .stop = k == 1});
+    if (indices[k] > 1) p.surfaces.back().medium.nd = indices[k];
+  }
+  const Lens lens = compile(p);
+  for (const double degrees : {0.0, 35.0, 60.0}) {
+    const double sine = std::sin(radians(degrees));
+    const auto cosine = [&](std::size_t space) { return std::sqrt(1 - std::pow(sine / indices[space], 2)); };
+    const Ghosts ghosts = ghost_pairs(lens, far_light(degrees));
+    ASSERT_EQ(ghosts.pairs.size(), 6U);
+    for (const GhostPair& pair : ghosts.pairs) {
+      double s = 0.5, p_power = 0.5, y = 0;
+      for (std::size_t k = 1; k <= 5; ++k) {
+        const bool between = pair.first < k && k <= pair.second;  // the space behind the surface k - 1
+        y -= (between ? 3 : 1) * lengths[k] * sine / indices[k] / cosine(k);
+      }
+      // Each surface transmits once, those between the reflections three times.
+      for (std::size_t k = 1; k <= 4; ++k) {
+        const testing::Bare bare(indices[k], indices[k + 1], cosine(k));
+        const int times = pair.first < k && k < pair.second ? 3 : 1;
+        const bool reflects = k == pair.first || k == pair.second;
+        s *= std::pow(bare.ts, times) * (reflects ? bare.s : 1);
+        p_power *= std::pow(bare.tp, times) * (reflects ? bare.p : 1);
+      }
+      SCOPED_TRACE(std::to_string(pair.first) + ' ' + std::to_string(pair.second));
+      EXPECT_NEAR(pair.energy, s + p_power, 1e-3 * (s + p_power)) << degrees;
+      EXPECT_NEAR(pair.centre.y, y, 2e-3);
+    }
+  }
+}
+
 TEST(GhostLaws, UniformSheetIsFlatAndHasTheIrradianceOfThePair) {
   const Lens lens = compile(plate());
   const Film film{.width_mm = 12, .height_mm = 12, .columns = 300, .rows = 300};
@@ -120,20 +155,28 @@ Matrix refraction(double in, double out, double curvature) { return {1, 0, (in -
 /// @param curvature positive if the centre lies in front of the mirror, on the side of the light
 Matrix mirror(double curvature) { return {1, 0, -2 * curvature, 1}; }
 
-TEST(GhostLaws, GhostOfASingletIsParaxial) {
-  const Lens lens = stopped_singlet(0.2);
-  const testing::PlainLens plain(lens);
-  const auto &front = plain.surfaces[1], &back = plain.surfaces[2];
-  const double n = front.behind, d = back.z - front.z;
-  Matrix m = after(refraction(1, n, front.curvature), travel(1));
-  m = after(travel(d), m);
-  m = after(travel(d), after(mirror(-back.curvature), m));  // light towards +z: the centre of the back is at -z
-  m = after(travel(d), after(mirror(front.curvature), m));
-  m = after(travel(plain.film_z - back.z), after(refraction(n, 1, back.curvature), m));
-  const Ghosts ghosts = ghost_pairs(lens, far_light(1));
-  ASSERT_EQ(ghosts.pairs.size(), 1U);
-  EXPECT_NEAR(ghosts.pairs[0].centre.y, -m[1] * std::tan(radians(1)), 2e-3 * std::abs(m[1]) * radians(1));
-  EXPECT_NEAR(ghosts.pairs[0].rms_radius_mm, std::abs(m[0]) * 0.2 / std::numbers::sqrt2, 2e-3 * std::abs(m[0]) * 0.2);
+TEST(GhostLaws, GhostsOfASingletAndAConcentricMeniscusAreParaxial) {
+  for (const auto& [front_radius, back_radius] : {std::pair{50.0, -50.0}, {-40.0, -46.0}, {46.0, 40.0}}) {
+    SCOPED_TRACE(front_radius);
+    Prescription p;
+    p.name = "singlet";
+    p.surfaces = {{.thickness = 1, .semi_diameter = 0.2, .stop = true},
+                  {.radius = front_radius, .thickness = 6, .medium = {.nd = 1.6}, .semi_diameter = 12},
+                  {.radius = back_radius, .thickness = 45, .semi_diameter = 12}};
+    const Lens lens = compile(p);
+    const double front = 1 / front_radius, back = 1 / back_radius;
+    Matrix m = after(refraction(1, 1.6, front), travel(1));
+    m = after(travel(6), m);
+    m = after(travel(6), after(mirror(-back), m));  // light towards +z: the centre of the back is at -z
+    m = after(travel(6), after(mirror(front), m));
+    m = after(travel(45), after(refraction(1.6, 1, back), m));
+    const Ghosts ghosts = ghost_pairs(lens, far_light(1));
+    ASSERT_EQ(ghosts.pairs.size(), 1U);
+    const double centre = -m[1] * std::tan(radians(1)), radius = std::abs(m[0]) * 0.2 / std::numbers::sqrt2;
+    EXPECT_NEAR(ghosts.pairs[0].centre.y, centre, 3e-3 * std::abs(m[1]) * radians(1));
+    EXPECT_NEAR(ghosts.pairs[0].rms_radius_mm, radius, 2e-3 * std::abs(m[0]) * 0.2);
+    EXPECT_FALSE(ghosts.pairs[0].caustic);
+  }
 }
 
 TEST(GhostLaws, ScaledLensHasScaledGhosts) {
