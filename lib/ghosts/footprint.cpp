@@ -259,8 +259,9 @@ std::vector<double> LightPath::margins(const Entrance& entrance, std::span<const
 Box LightPath::region(const Entrance& entrance, Wavelength wavelength) const {
   // Two dense lines through the middle meet rings that lie between the corners.
   constexpr std::size_t cells = 24, line = 256;
-  Box box = entrance.box();
-  for (int round = 0; round < 6; ++round) {
+  constexpr int rounds = 12;
+  Box box = entrance.box(), found;
+  for (int round = 0; round < rounds; ++round) {
     std::vector<Vec2<double>> positions = corners_of(box, cells);
     for (std::size_t k = 0; k <= line; ++k) {
       const Vec2<double> at = box.low + (box.high - box.low) * (static_cast<double>(k) / line),
@@ -273,10 +274,18 @@ Box LightPath::region(const Entrance& entrance, Wavelength wavelength) const {
     for (std::size_t i = 0; i < margin.size(); ++i) {
       if (margin[i] > 0) lit = {glm::min(lit.low, positions[i]), glm::max(lit.high, positions[i])};
     }
-    const Vec2<double> size = box.high - box.low, step = size / static_cast<double>(cells);
-    const bool large = lit.high.x - lit.low.x > size.x / 2 && lit.high.y - lit.low.y > size.y / 2;
+    const Vec2<double> half = (box.high - box.low) / 2.0, step = half * (2.0 / cells);
+    const bool bright = margin[best] > 0,
+               large = bright && lit.high.x - lit.low.x > half.x && lit.high.y - lit.low.y > half.y;
     box = {lit.low - step, lit.high + step};
-    if (margin[best] > 0 && (large || round == 5)) return box;
+    if (!bright && (round >= 5 || found.high.x > found.low.x)) return found;
+    if (round + 1 == rounds) return box;
+    if (!large) continue;
+    // A box that was found on a coarse grid may end within an arc or a ring: it grows while it gains light.
+    const Vec2<double> size = box.high - box.low, before = 1.2 * (found.high - found.low);
+    if (round == 0 || (size.x < before.x && size.y < before.y)) return box;
+    found = box;
+    box = {glm::max(box.low - size, entrance.box().low), glm::min(box.high + size, entrance.box().high)};
   }
   return {};
 }

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -100,6 +103,7 @@ class Tracer {
   }
 
   Tally tally;
+  std::optional<std::pair<std::size_t, std::size_t>> only{};  ///< the first surface and the second of one pair
 
  private:
   double random() { return uniform_(engine_); }
@@ -116,8 +120,9 @@ class Tracer {
       if (!ray.step(lens_.surfaces.size())) return true;
     }
   }
-  /// Chooses one of the reflected rays and moves it on; false if it leaves the lens at once or there is none.
-  bool choose(Branch& ray, double& weight) {
+  /// Chooses one of the reflected rays; false if there is none.
+  bool choose(Branch& ray, double& weight, std::size_t surface) {
+    if (only) std::erase_if(choices_, [&](const Branch& choice) { return choice.surface != surface; });
     double sum = 0;
     for (const Branch& choice : choices_) sum += choice.power();
     if (!(sum > 0)) return false;
@@ -140,11 +145,11 @@ class Tracer {
     const std::size_t count = lens_.surfaces.size();
     if (pass(ray) && ray.direction.z > 0) tally.image += ray.power();
     double weight = 1;
-    if (!choose(ray, weight)) return;
+    if (!choose(ray, weight, only ? only->second : 0)) return;
     const std::size_t second = ray.surface;
     if (!ray.step(count)) return;
     pass(ray);
-    if (!choose(ray, weight)) return;
+    if (!choose(ray, weight, only ? only->first : 0)) return;
     const std::size_t first = ray.surface;
     Branch reflected;
     for (int reflections = 2; ray.step(count);) {
@@ -247,6 +252,24 @@ constexpr std::array cases{Case{"double_gauss_52mm_f1.8", 12}, Case{"fisheye_16m
 
 TEST(BruteForce, RandomReflectionsEqualGhosts) {
   for (const Case& of : {cases[0], cases[1], cases[2]}) compare(of, 1'000'000);
+}
+
+// Light that enters along an arc, and in a disc with a ring around it.
+TEST(BruteForce, PairsOfArcsAndRingsAreComplete) {
+  for (const auto& [name, degrees, first, second] :
+       {std::tuple{"modern_50mm_f1.0", 11.65, 3U, 9U}, {"fisheye_10mm_f4", 0.0, 1U, 3U}}) {
+    const Lens lens = testing::data_lens(name);
+    const double angle = radians(degrees);
+    Tracer tracer(lens, angle, {.width_mm = 43, .height_mm = 43, .columns = bins, .rows = bins});
+    tracer.only = {first, second};
+    tracer.trace(400'000);
+    const Sum& sum = tracer.tally.ghosts;
+    const double expected = sum.value / tracer.tally.entered, noise = std::sqrt(sum.squares) / tracer.tally.entered;
+    const ScenePoint light{{0, -std::sin(angle), -std::cos(angle)}, true};
+    const Ghosts ghosts = ghost_pairs(lens, light, {.only = {{first, second}}});
+    EXPECT_LT(noise, 0.06 * expected);
+    EXPECT_NEAR(ghosts.pairs.at(0).energy, expected, 0.05 * expected + 3 * noise) << name;
+  }
 }
 
 TEST(BruteForce, ManyRandomReflectionsEqualGhosts) {
