@@ -149,36 +149,6 @@ std::string table_of(const petzval::Ghosts& ghosts, const petzval::GhostAudit& a
   return out.str();
 }
 
-/// The ghosts of a light in colour: the irradiance of the film for a light of irradiance 1.
-class Pictures {
- public:
-  Pictures(const petzval::Lens& lens, const petzval::Film& film, const Options& options)
-      : lens_(lens),
-        film_(film),
-        weights_(examples::rgb_weights(options.wavelengths_nm, examples::white_light(options.white_point))) {
-    for (std::size_t w = 0; w < weights_.size(); ++w) wavelengths_.emplace_back(w);
-  }
-
-  petzval::RgbImage of(const petzval::ScenePoint& light, const petzval::GhostOptions& options) const {
-    const std::size_t pixels = static_cast<std::size_t>(film_.columns) * static_cast<std::size_t>(film_.rows);
-    std::vector<float> planes(pixels * wavelengths_.size());
-    petzval::add_ghosts(lens_, light, film_, wavelengths_, planes, options);
-    petzval::RgbImage image(film_.columns, film_.rows);
-    for (std::size_t w = 0; w < wavelengths_.size(); ++w) {
-      for (std::size_t i = 0; i < 3 * pixels; ++i) {
-        image.pixels[i] += static_cast<float>(weights_[w][i % 3]) * planes[w * pixels + i / 3];
-      }
-    }
-    return image;
-  }
-
- private:
-  const petzval::Lens& lens_;
-  petzval::Film film_;
-  std::vector<std::array<double, 3>> weights_;
-  std::vector<petzval::Wavelength> wavelengths_;
-};
-
 }  // namespace
 
 int commands::ghosts(int argc, char** argv) {
@@ -242,17 +212,14 @@ int commands::ghosts(int argc, char** argv) {
     }
     const petzval::GhostAudit audit = petzval::ghost_audit(lens, light.point, ghost);
 
-    const Pictures pictures(lens, film, options);
+    const auto weights = examples::rgb_weights(options.wavelengths_nm, examples::white_light(options.white_point));
+    const auto picture = [&] { return examples::ghost_picture(lens, light.point, film, weights, ghost); };
     std::map<std::string, std::vector<float>> channels;
     if (layers) {
       for (const GhostPair& pair : ghosts.pairs) {
         ghost.only = {{pair.first, pair.second}};
-        const petzval::RgbImage image = pictures.of(light.point, ghost);
-        const std::string name = "pair_" + std::to_string(pair.first) + '_' + std::to_string(pair.second) + '.';
-        for (std::size_t c = 0; c < 3; ++c) {
-          std::vector<float>& plane = channels[name + "RGB"[c]];
-          for (std::size_t i = c; i < image.pixels.size(); i += 3) plane.push_back(image.pixels[i]);
-        }
+        examples::add_channels(channels, "pair_" + std::to_string(pair.first) + '_' + std::to_string(pair.second) + '.',
+                               picture());
       }
     }
     ghost.only.clear();
@@ -260,7 +227,7 @@ int commands::ghosts(int argc, char** argv) {
       if (!all) ghost.only.push_back({pair.first, pair.second});
     }
     ghost.starburst = starburst;
-    const petzval::RgbImage image = pictures.of(light.point, ghost);
+    const petzval::RgbImage image = picture();
 
     Json report{{"lens", loaded.id},
                 {"light",

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/checkpoint.hpp"
 #include "renderer/first_hits.hpp"
+#include "renderer/ghosts.hpp"
 #include "renderer/outputs.hpp"
 #include "renderer/render.hpp"
 #include "renderer/scene_checksum.hpp"
@@ -61,7 +63,7 @@ struct Options {
   examples::CameraFlags setup;
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
-  std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
+  std::uint32_t samples = 0, width = 0, height = 0, seed = 0, ghosts = 0;  // width, height 0: not given
   double budget_px = 0, seconds = 0, noise = 0, exposure = 1;
   bool choose_model = false, resume = false;
 };
@@ -111,6 +113,13 @@ void write_results(const renderer::PictureSums& sums, Json job, const Json& abou
   examples::write_text(folder / "tiles.json", numbers_of_sums["tiles"].dump() + '\n');
   numbers_of_sums.erase("tiles"), job.erase("setup");
   report.update(about), report.update(numbers_of_sums);
+  if (const std::uint32_t lights = job.value("ghosts", 0u); lights > 0) {
+    const auto light = [](const petzval::RgbImage& image) {
+      return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
+    };
+    const double fraction = light(renderer::picture_with_ghosts(sums)) / light(sums.picture()) - 1;
+    report["ghosts"].update({{"lights", lights}, {"fraction", examples::finite_or_null(fraction)}});
+  }
   report["job"] = std::move(job);
   examples::write_text(folder / "render.json", report.dump(1) + '\n');
   say(folder / "tiles.json"), say(folder / "render.json");
@@ -156,6 +165,10 @@ class Job {
     }
     if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light source: the picture is black\n";
     examples::say_what_does_not_fit(lens_, setup_.film);
+    if (options.ghosts > 0 && beyond_the_lens()) {
+      throw petzval::Error("--ghosts = " + std::to_string(options.ghosts) +
+                           "; must not be used with a focal surface or an expressive lens, which have no surfaces");
+    }
     choose_model();
     if (!options.setup.points_file.empty()) read_points();
     if (!setup_.camera.expressive.dispersion.empty() && options.wavelengths == "d") {
@@ -195,14 +208,27 @@ class Job {
       if (options_.shard.has(t)) tiles.push_back(t);
     }
     const renderer::UnitTracer tracer(scene_, lens, colours_, integrator_, options_.seed);
-    if (sums.guides().empty()) {
-      sums.set_guides(renderer::first_hits(tracer, sums, tiles, examples::threads()));
+    renderer::PictureSums::Channels guides = sums.guides();
+    std::erase_if(guides, [](const auto& channel) { return channel.first.starts_with("ghosts."); });
+    if (guides.empty()) guides = renderer::first_hits(tracer, sums, tiles, examples::threads());
+    double ghost_seconds = 0;
+    if (options_.ghosts > 0) {
+      const renderer::Stopwatch watch(ghost_seconds);
+      petzval::CameraSetup radiometric = setup_;
+      radiometric.camera.normalisation = petzval::Normalisation::irradiance;
+      radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
+      const double scale = job.at("white").get<double>() / irradiance_on_axis(petzval::camera(radiometric, lens_));
+      const auto lights = renderer::ghost_lights(scene_, lens, options_.ghosts, options_.seed);
+      guides.merge(renderer::ghosts(lens.camera(), lights, colours_, scale, examples::threads()));
     }
+    sums.set_guides(std::move(guides));
+    renderer::Effort effort = this->effort(job.at("white"));
+    if (effort.seconds) *effort.seconds = std::max(*effort.seconds - ghost_seconds, 0.02);  // one pass
     const renderer::RenderReport report = [&] {
       const examples::Interrupt interrupt;
       return renderer::render(
-          tracer, sums, tiles, effort(job.at("white")), examples::threads(),
-          [&] { renderer::Checkpoint::write(sums, job, file); }, [] { return examples::Interrupt::asked(); });
+          tracer, sums, tiles, effort, examples::threads(), [&] { renderer::Checkpoint::write(sums, job, file); },
+          [] { return examples::Interrupt::asked(); });
     }();
     say(file);
     if (report.finished && options_.noise > 0) say_noise(sums, job.at("white"));
@@ -210,15 +236,15 @@ class Job {
       std::cerr << "note: out of time; the same command with --resume continues\n";
     }
     if (options_.shard.count > 1) return;
-    write_results(sums, job,
-                  {{"model", petzval::name(chosen_.model)},
-                   {"why", chosen_.why},
-                   {"seconds", report.seconds},
-                   {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
-                   {"paths", report.paths},
-                   {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
-                   {"finished", report.finished && !report.interrupted}},
-                  options_.formats, folder, options_.exposure);
+    Json about{{"model", petzval::name(chosen_.model)},
+               {"why", chosen_.why},
+               {"seconds", report.seconds},
+               {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
+               {"paths", report.paths},
+               {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
+               {"finished", report.finished && !report.interrupted}};
+    if (options_.ghosts > 0) about["ghosts"]["seconds"] = ghost_seconds;
+    write_results(sums, job, about, options_.formats, folder, options_.exposure);
   }
 
   petzval::ModelKind model() const noexcept { return chosen_.model; }
@@ -281,7 +307,7 @@ class Job {
     // samples.
     const bool with_noise = !job.at("noise").is_null();
     const auto without_samples = [&](Json of) {
-      of.erase("samples");
+      of.erase("samples"), of.erase("ghosts");
       if (with_noise) of.erase("noise");
       return of;
     };
@@ -313,9 +339,13 @@ class Job {
     chosen_ = chosen();
     setup_.camera.model = chosen_.model;
   }
+  /// True if the camera has a focal surface or an expressive lens.
+  bool beyond_the_lens() const noexcept {
+    return !options_.setup.points_file.empty() || !setup_.focal_points.empty() || options_.setup.from_lens != 0 ||
+           !setup_.camera.expressive.empty();
+  }
   renderer::ModelForScene chosen() const {
-    if (!options_.setup.points_file.empty() || !setup_.focal_points.empty() || options_.setup.from_lens != 0 ||
-        !setup_.camera.expressive.empty()) {
+    if (beyond_the_lens()) {
       throw petzval::Error(
           "--model auto: a focal surface or an expressive lens needs a first-order model by name: pinhole, thin, "
           "thin_two_disc or thick");
@@ -368,6 +398,7 @@ class Job {
             {"real_f_number", petzval::real_f_number(lens_)},
             {"seed", options_.seed},
             {"sequence", "16 rounds of Owen-Sobol points"},
+            {"ghosts", options_.ghosts},
             {"noise", options_.noise > 0 ? Json(options_.noise) : Json()},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
             {"petzval", PETZVAL_VERSION},
@@ -515,6 +546,11 @@ int commands::render(int argc, char** argv) {
   examples::add_choice(app, "--normalisation", options.setup.camera.normalisation, units, "unit of the picture",
                        examples::names(units));
   examples::add_coatings(app, options.coatings, "all light passes the lens");
+  examples::add_count(app, "--ghosts", options.ghosts, {0, 65536, "a whole number from 0 to 65536"},
+                      "add the ghosts of so many points of the lamps and the sky: reflections between the surfaces of "
+                      "the lens, as of petzval ghosts; 16 suit most scenes. Also the channels ghosts.R, .G and .B of "
+                      "picture.exr. Their time counts for --time")
+      ->default_str("none");
   examples::add_number(app, "--exposure", options.exposure, examples::positive_number,
                        "brightness of picture.png: white is the radiance 1 / exposure in the centre");
   std::string tile;

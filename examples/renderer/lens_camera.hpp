@@ -33,8 +33,10 @@ class LensCamera {
   petzval::Projection project(const glm::vec3& point) const noexcept { return camera_.project(to_lens(point)); }
   /// Distance of a point from the front vertex along the axis, mm; negative behind the vertex.
   double depth(const glm::vec3& point) const noexcept;
-  /// Maps a point of the world to the lens frame, mm.
+  /// Map points, mm, and unit directions between the world and the lens frame.
   petzval::Vec3<double> to_lens(const glm::vec3& point) const noexcept;
+  petzval::Vec3<double> turn_to_lens(const glm::vec3& direction) const noexcept;
+  glm::vec3 to_world(const petzval::Vec3<double>& point) const noexcept;
   /// The first vertex of the lens.
   glm::vec3 front() const noexcept { return to_world({0, 0, 0}); }
 
@@ -84,8 +86,6 @@ class LensCamera {
   double pdf_distant_connection(const WorldRay& travel, petzval::Wavelength wavelength) const noexcept;
 
  private:
-  petzval::Vec3<double> turn_to_lens(const glm::vec3& direction) const noexcept;
-  glm::vec3 to_world(const petzval::Vec3<double>& point) const noexcept;
   glm::vec3 turn_to_world(const petzval::Vec3<double>& direction) const noexcept;
   Connection connection(const petzval::ImportanceSample& sample) const noexcept;
 

@@ -11,12 +11,22 @@ namespace renderer {
 using examples::finite_or_null;
 using examples::Json;
 
+petzval::RgbImage picture_with_ghosts(const PictureSums& sums) {
+  petzval::RgbImage picture = sums.picture();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto ghosts = sums.guides().find(std::string("ghosts.") + "RGB"[c]);
+    if (ghosts == sums.guides().end()) continue;
+    for (std::size_t i = c; i < picture.pixels.size(); i += 3) picture.pixels[i] += ghosts->second[i / 3];
+  }
+  return picture;
+}
+
 std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,
                                                   const std::filesystem::path& folder, float exposure) {
-  const petzval::RgbImage picture = sums.picture();
+  const petzval::RgbImage picture = picture_with_ghosts(sums);
   return examples::write_picture(picture, petzval::to_srgb8(picture, exposure), formats, folder / "picture", texts,
                                  numbers, sums.guides());
 }

@@ -13,9 +13,12 @@
 
 namespace renderer {
 
-/// Writes picture.exr (linear Rec. 709 and the guides, with `texts` and `numbers` in its header), picture.pfm (linear
-/// Rec. 709) and picture.png (sRGB of the values times `exposure`) to a folder, as listed in `formats`. Returns the
-/// paths.
+/// The picture plus its guides ghosts.R, .G and .B, if there are any.
+petzval::RgbImage picture_with_ghosts(const PictureSums& sums);
+
+/// Writes picture_with_ghosts() as picture.exr (linear Rec. 709 and the guides, with `texts` and `numbers` in its
+/// header), picture.pfm (linear Rec. 709) and picture.png (sRGB of the values times `exposure`) to a folder, as listed
+/// in `formats`. Returns the paths.
 /// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                                   const std::map<std::string, std::string>& texts,

@@ -138,6 +138,25 @@ petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::
   return petzval::render(psf, rgb_weights(psf.wavelengths_nm, light));
 }
 
+petzval::RgbImage ghost_picture(const petzval::Lens& lens, const petzval::ScenePoint& light, const petzval::Film& film,
+                                std::span<const std::array<double, 3>> weights, const petzval::GhostOptions& options) {
+  petzval::RgbImage image(film.columns, film.rows);
+  const std::size_t pixels = image.pixels.size() / 3;
+  std::vector<petzval::Wavelength> wavelengths;
+  for (std::size_t w = 0; w < weights.size(); ++w) {
+    if (weights[w] != std::array<double, 3>{}) wavelengths.emplace_back(w);
+  }
+  std::vector<float> planes(pixels * wavelengths.size());
+  petzval::add_ghosts(lens, light, film, wavelengths, planes, options);
+  for (std::size_t w = 0; w < wavelengths.size(); ++w) {
+    const auto& weight = weights[wavelengths[w].index(0)];
+    for (std::size_t i = 0; i < 3 * pixels; ++i) {
+      image.pixels[i] += static_cast<float>(weight[i % 3]) * planes[w * pixels + i / 3];
+    }
+  }
+  return image;
+}
+
 Exposed expose(const petzval::RgbImage& image, double exposure) {
   std::vector<float> lit;
   for (std::size_t i = 0; i < image.pixels.size(); i += 3) {

@@ -13,6 +13,7 @@
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/ghosts/ghosts.hpp"
 #include "petzval/image/image.hpp"
 
 namespace examples {
@@ -64,6 +65,10 @@ petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::
 /// RGB weights of wavelengths under the light, by the colour matching functions of the data directory.
 /// @throws petzval::Error if the wavelengths are invalid
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light);
+
+/// The ghosts of a light: petzval::add_ghosts() at each wavelength of the lens, times its weights for R, G and B.
+petzval::RgbImage ghost_picture(const petzval::Lens& lens, const petzval::ScenePoint& light, const petzval::Film& film,
+                                std::span<const std::array<double, 3>> weights, const petzval::GhostOptions& options);
 
 /// A displayable picture and its white level: the irradiance at the 99th percentile of the lit pixels, divided by
 /// `exposure`. With an exposure above 1, overexposed pixels fade to white.

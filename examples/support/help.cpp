@@ -26,7 +26,7 @@ constexpr std::array all_groups{
           "--robust --blur --points "},
     Group{"Picture", false,
           " --film --fov --size --width --columns --title --white-point --normalisation --exposure --frames --fps "
-          "--travel "},
+          "--travel --ghosts "},
     Group{"Work", false,
           " --integrator --diffraction --film-reflectance --wavelengths --spp --rays --noise --time --compare "},
     Group{"Window", false, " --replay --log --panels --screenshot "},

@@ -9,18 +9,14 @@
 #include "text.hpp"
 
 namespace examples {
-namespace {
 
-petzval::ExrPart exr_part(const petzval::RgbImage& image) {
-  petzval::ExrPart part{.width = image.width, .height = image.height};
+void add_channels(std::map<std::string, std::vector<float>>& channels, const std::string& prefix,
+                  const petzval::RgbImage& image) {
   for (std::size_t c = 0; c < 3; ++c) {
-    std::vector<float>& values = part.channels[std::string(1, "RGB"[c])];
+    std::vector<float>& values = channels[prefix + "RGB"[c]];
     for (std::size_t i = c; i < image.pixels.size(); i += 3) values.push_back(image.pixels[i]);
   }
-  return part;
 }
-
-}  // namespace
 
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png) {
   formats = {"exr", "png"};
@@ -49,10 +45,10 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
     file += '.' + format;
     if (std::find(files.begin(), files.end(), file) != files.end()) continue;
     if (format == "exr") {
-      petzval::ExrPart part = exr_part(image);
+      petzval::ExrPart part{.width = image.width, .height = image.height, .channels = channels};
       part.texts = attributes;
       part.numbers = numbers;
-      part.channels.insert(channels.begin(), channels.end());
+      add_channels(part.channels, "", image);
       petzval::write_exr({&part, 1}, file);
     }
     if (format == "pfm") petzval::write_pfm(image, file);

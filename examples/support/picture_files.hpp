@@ -14,6 +14,10 @@ namespace examples {
 /// Adds --format: exr, png and pfm; exr and png by default. png: the exposure of the PNG, for the help text.
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png);
 
+/// Adds the planes PREFIXR, PREFIXG and PREFIXB of an image.
+void add_channels(std::map<std::string, std::vector<float>>& channels, const std::string& prefix,
+                  const petzval::RgbImage& image);
+
 /// Writes a PNG with parameters().
 void write_png(const petzval::Rgb8Image& image, const std::filesystem::path& file);
 

@@ -173,7 +173,7 @@ const std::vector<Reporter> reporters = {
 #ifdef PETZVAL_TEST_HAS_render
     {"render",
      "out/render.json",
-     {{"--scene", "balls", "LENS", "--focus", "1m", "--size", "8x8", "--spp", "1", "--out", "@out"}}},
+     {{"--scene", "balls", "LENS", "--focus", "1m", "--size", "8x8", "--spp", "1", "--ghosts", "1", "--out", "@out"}}},
 #endif
 #ifdef PETZVAL_TEST_HAS_blur
     {"blur",
