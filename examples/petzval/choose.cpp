@@ -7,14 +7,20 @@
 #include "commands.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <iostream>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "petzval/analysis/choose_model.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/ghosts/ghosts.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/lens_light.hpp"
@@ -24,7 +30,7 @@
 namespace {
 
 struct Options : examples::ModelOptions {
-  double near_mm = 0, far_mm = 0, budget_px = 0;
+  double near_mm = 0, far_mm = 0, budget_px = 0, contrast = 0;
 };
 
 constexpr examples::Range budget{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
@@ -43,6 +49,34 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
                                       .seed = static_cast<std::uint32_t>(random()),
                                       .threads = examples::threads()};
   return petzval::model_error(lens, options.film(), model, samples).all.max_px;
+}
+
+/// The radiance of a lamp of 1 degree diameter, relative to its surroundings, at which the mean irradiance of its
+/// brightest ghost is 1 % of the surroundings; infinite if no ghost reaches the film. The image of the lamp lies at 0.7
+/// of the half diagonal of the film. NaN if the lens has no ghosts there: as petzval::ghost_pairs().
+double contrast_limit(const petzval::Lens& lens, const petzval::Film& film) try {
+  constexpr double pi = std::numbers::pi;
+  const double lamp_rad = petzval::radians(0.5), f_number = petzval::real_f_number(lens);
+  const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
+  const petzval::Vec3<double> to =
+      camera.sample({film.point(0.85 * film.columns, 0.15 * film.rows), 0.5, 0.5}).ray.direction;
+  const petzval::GhostOptions options{.max_pairs = 300, .tolerance = 1e-2, .threads = examples::threads()};
+  const petzval::Ghosts ghosts = petzval::ghost_pairs(lens, {to, true}, options);
+  const petzval::Vec3<double> rim = to + lamp_rad * glm::normalize(glm::cross(to, {0, 1, 0}));
+  const petzval::Ghosts of_rim = petzval::ghost_pairs(lens, {rim, true}, options);
+  double brightest = 0;
+  for (const petzval::GhostPair& pair : ghosts.pairs) {
+    const auto same = std::ranges::find_if(of_rim.pairs, [&](const petzval::GhostPair& other) {
+      return other.first == pair.first && other.second == pair.second;
+    });
+    if (same == of_rim.pairs.end() || !film.contains(pair.centre)) continue;
+    const double shift = std::hypot(same->centre.x - pair.centre.x, same->centre.y - pair.centre.y);
+    const double area = pi * (2 * pair.rms_radius_mm * pair.rms_radius_mm + shift * shift);  // as a uniform disc
+    brightest = std::max(brightest, pair.energy * ghosts.entering_mm2 / area);
+  }
+  return 0.01 * pi / (4 * f_number * f_number) / (brightest * pi * lamp_rad * lamp_rad);
+} catch (const petzval::Error&) {
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -67,7 +101,10 @@ int commands::choose(int argc, char** argv) {
   examples::add_number(app, "--budget", options.budget_px, budget, "largest error of a ray (pixels)")
       ->required()
       ->default_str("");
-
+  examples::add_number(app, "--contrast", options.contrast, examples::positive_number,
+                       "radiance of a lamp of 1 degree diameter in the scene, divided by the radiance around the lamp: "
+                       "says if the scene needs ghosts")
+      ->default_str("none");
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
@@ -85,6 +122,8 @@ int commands::choose(int argc, char** argv) {
     const auto rows = examples::model_rows(choice.table, film, true);
     const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;
     const double verified = verified_max_px(lens, options, choice.model);
+    const double limit = contrast_limit(lens, film);
+    const bool known = options.contrast > 0 && !std::isnan(limit), needed = options.contrast > limit;
     if (options.json) {
       std::cout << examples::Json{{"model", petzval::name(choice.model)},
                                   {"predicted_max_px", predicted},
@@ -95,6 +134,9 @@ int commands::choose(int argc, char** argv) {
                                    {{"exposure", choice.without_transmission.exposure},
                                     {"field", choice.without_transmission.field},
                                     {"colour", colour ? examples::to_json(*colour) : examples::Json()}}},
+                                  {"ghosts",
+                                   {{"needed", known ? examples::Json(needed) : examples::Json()},
+                                    {"contrast_limit", examples::finite_or_null(limit)}}},
                                   {"table", examples::to_json(rows)}}
                        .dump(1)
                 << '\n';
@@ -107,6 +149,11 @@ int commands::choose(int argc, char** argv) {
               << examples::bullets(choice.reasons);
     if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
     if (colour) std::cout << "with transmission: " << examples::colour_in_words(*colour)[1] << '\n';
+    if (limit > 0) {
+      std::cout << "ghosts are visible if a lamp of 1 degree diameter is more than " << examples::number(limit, 3)
+                << " times as bright as its surroundings" << (known ? needed ? ": needed" : ": not needed" : "")
+                << '\n';
+    }
     std::cout << "\nmax, pupil and exposure are bounds\n" << examples::to_text(rows);
   });
 }

@@ -36,7 +36,8 @@ constexpr std::array all_groups{
     Group{"Quality", true,
           " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "
           "--pairs "},
-    Group{"Depths", true, " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --white "},
+    Group{"Depths", true,
+          " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --contrast --white "},
     Group{"Files", true,
           " --deep-out --pair-layers --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,

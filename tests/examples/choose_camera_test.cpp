@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
+#include "../data_lenses.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/sobol.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/ghosts/ghosts.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
 namespace {
@@ -51,6 +60,39 @@ TEST_F(ChooseCamera, ErrorsDependOnDepthsAndStop) {
   EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);
   const auto stopped = choice({"--near", "1000", "--far", "inf", "--budget", "1", "--f-number", "8"});
   EXPECT_LT(row_of(stopped, "polynomial_5")["max_px"], 0.5 * row_of(all, "polynomial_5")["max_px"].get<double>());
+}
+
+// The limit against a picture of the ghosts of points of the lamp.
+TEST_F(ChooseCamera, GhostsAreNeededAboveTheContrast) {
+  const Arguments scene{"--near", "1000", "--far", "inf", "--budget", "1", "--f-number", "8", "--size", "90x60"};
+  const auto plain = choice(scene);
+  EXPECT_TRUE(plain["ghosts"]["needed"].is_null());
+  const double limit = plain["ghosts"]["contrast_limit"];
+  for (const double factor : {0.9, 1.1}) {
+    Arguments more{scene};
+    more.insert(more.end(), {"--contrast", std::to_string(factor * limit)});
+    EXPECT_EQ(choice(more)["ghosts"]["needed"], factor > 1);
+  }
+  const petzval::Lens lens =
+      petzval::with_focus(petzval::with_f_number(petzval::testing::data_lens("double_gauss_52mm_f1.8"), 8), 3000);
+  const petzval::Film film{.columns = 90, .rows = 60};
+  const petzval::Camera camera(lens, film);
+  const petzval::Vec3<double> to =
+      camera.sample({.film = film.point(76.5, 9), .pupil_u = 0.5, .pupil_v = 0.5}).ray.direction;
+  constexpr std::uint32_t count = 32;
+  const double radius = petzval::radians(0.5);
+  std::vector<float> picture(90 * 60);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto at = petzval::owen_sobol(i, 0);
+    const double r = radius * std::sqrt(at.x), turn = petzval::radians(360 * at.y);
+    const petzval::Vec3<double> light{to.x + r * std::cos(turn), to.y + r * std::sin(turn), to.z};
+    petzval::add_ghosts(lens, {light, true}, film, std::vector<petzval::Wavelength>(1), picture);
+  }
+  const double solid_angle = std::numbers::pi * radius * radius;
+  const double ghost = double{*std::ranges::max_element(picture)} / count * solid_angle * limit;
+  const double surroundings = std::numbers::pi / (4 * 8 * 8);
+  EXPECT_GT(ghost, 0.01 * surroundings);
+  EXPECT_LT(ghost, 0.025 * surroundings);
 }
 
 }  // namespace
