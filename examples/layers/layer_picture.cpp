@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <limits>
 
 namespace lens_blur {
@@ -64,6 +65,36 @@ RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& c
     }
   }
   return image;
+}
+
+std::vector<BrightPart> bright_parts(const petzval::LayerSet& layers, const petzval::LayerCamera& camera, double above,
+                                     std::size_t most) {
+  constexpr int side = 24;
+  const RgbImage image = sharp_of(layers, camera);
+  const int overscan = (layers.columns() - camera.columns) / 2;
+  std::vector<BrightPart> parts(side * side);
+  std::vector<double> sums(parts.size());
+  for (int y = 0; y < camera.rows; ++y) {
+    for (int x = 0; x < camera.columns; ++x) {
+      const float* const rgb = image.pixel(x, y);
+      const double sum = std::max(rgb[0], 0.0f) + std::max(rgb[1], 0.0f) + std::max(rgb[2], 0.0f);
+      if (!(std::max({rgb[0], rgb[1], rgb[2]}) > above)) continue;
+      const auto k = static_cast<std::size_t>(y * side / camera.rows * side + x * side / camera.columns);
+      const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
+      sums[k] += sum;
+      parts[k].raster += petzval::Vec2<double>(x + 0.5, y + 0.5) * sum;
+      parts[k].inverse_depth += static_cast<double>(layers.inverse_depth(0)[pixel]) * sum;
+      for (std::size_t c = 0; c < 3; ++c) parts[k].light[c] += static_cast<double>(std::max(rgb[c], 0.0f));
+    }
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (sums[k] > 0) order.push_back(k), parts[k].raster /= sums[k], parts[k].inverse_depth /= sums[k];
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t k) { return sums[k]; });
+  std::vector<BrightPart> result;
+  for (std::size_t k = 0; k < std::min(most, order.size()); ++k) result.push_back(parts[order[k]]);
+  return result;
 }
 
 }  // namespace lens_blur

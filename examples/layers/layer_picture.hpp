@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <vector>
+
 #include "layers/layer_input.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
@@ -28,6 +32,17 @@ petzval::RgbImage colours_of(const petzval::BlurredImage& picture);
 
 /// The layers within the picture, composited as a pinhole sees them.
 petzval::RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera);
+
+/// A part of the picture with light above a threshold.
+struct BrightPart {
+  petzval::Vec2<double> raster{0, 0};  ///< middle of its light, px
+  double inverse_depth = 0;            ///< mean, 1/mm
+  std::array<double, 3> light{};       ///< sum of the radiances of its pixels
+};
+
+/// The parts with the most light above a threshold, at most `most` of 24 x 24 parts, by decreasing light.
+std::vector<BrightPart> bright_parts(const petzval::LayerSet& layers, const petzval::LayerCamera& camera, double above,
+                                     std::size_t most);
 
 /// The mean over squares of side x side pixels.
 petzval::RgbImage averaged(const petzval::RgbImage& image, int side);

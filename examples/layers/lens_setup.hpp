@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "layers/layer_picture.hpp"
 #include "layers/lens_view.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/focus/autofocus.hpp"
@@ -62,6 +64,10 @@ class BlurLens {
   /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface. travelled_mm: distance that the
   /// camera has moved to the right; focus points over time stay in the world.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0, double travelled_mm = 0);
+
+  /// The ghosts of bright parts of a picture, in its unit.
+  /// @throws petzval::Error if the lens has no surfaces, or has rays that differ from those of its surfaces
+  petzval::RgbImage ghosts(std::span<const BrightPart> parts, int threads) const;
 
  private:
   examples::WorldToLens world_to_lens(const petzval::Camera& camera) const;

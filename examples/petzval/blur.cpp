@@ -10,9 +10,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,7 +45,7 @@ using petzval::RgbImage;
 struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
-  std::uint32_t layers = 4, supersample = 0;
+  std::uint32_t layers = 4, supersample = 0, ghosts = 0;
   std::uint32_t frames = 1;                     ///< CameraFlags::frame_count()
   double travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: lens_blur::threshold_of()
   bool compare = false;
@@ -186,12 +188,25 @@ class Job {
     nearest_mm_ = std::numeric_limits<double>::infinity();  // later errors have other reasons
     const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     std::map<std::string, std::vector<float>> channels;
+    Json ghost_json;
     if (input_.deep()) {
       const RgbImage alpha =
           lens_blur::averaged(grey(blurred_, [&](std::size_t i) { return blurred_.rgba[4 * i + 3]; }), side_);
       for (std::size_t i = 0; i < alpha.pixels.size(); i += 3) channels["A"].push_back(alpha.pixels[i]);
     }
-    write(picture, folder / ("blur" + number), channels);
+    RgbImage seen = picture;
+    if (options_.ghosts > 0) {
+      start = std::chrono::steady_clock::now();
+      const auto parts = lens_blur::bright_parts(layers_, rays.camera(), threshold, options_.ghosts);
+      const RgbImage ghosts = lens_.ghosts(parts, threads_);
+      std::ranges::transform(picture.pixels, ghosts.pixels, seen.pixels.begin(), std::plus());
+      examples::add_channels(channels, "ghosts.", ghosts);
+      const auto light = [](const RgbImage& of) { return std::reduce(of.pixels.begin(), of.pixels.end(), 0.0); };
+      ghost_json = {{"lights", parts.size()},
+                    {"fraction", examples::finite_or_null(light(ghosts) / light(picture))},
+                    {"ms", examples::ms_since(start)}};
+    }
+    write(seen, folder / ("blur" + number), channels);
     if (frame == 0) {
       write(lens_blur::averaged(lens_blur::sharp_of(layers_, rays.camera()), side_), folder / "sharp");
       write(lens_blur::averaged(grey(blurred_, [&](std::size_t i) { return blurred_.missed[i]; }), side_),
@@ -217,10 +232,11 @@ class Job {
               {"highlights", blurred_.highlight_count},
               {"supersample", side_}};
     if (options_.lens.setup.points_file.empty()) json["focus_mm"] = examples::finite_or_null(focus_mm);
+    if (!ghost_json.is_null()) json["ghosts"] = ghost_json;
     if (options_.compare) compare(rays, picture, json);
     if (options_.frames > 1 && frame * most_shown / options_.frames >= shown_.size()) {
       const bool infinite = std::isinf(focus_mm);
-      shown_.push_back({petzval::to_srgb8(picture),
+      shown_.push_back({petzval::to_srgb8(seen),
                         {!pull.moves() ? examples::number(time, 3) + " s"
                          : infinite    ? "infinity"
                                        : examples::number(focus_mm / 1000, 3) + " m"}});
@@ -416,6 +432,11 @@ int commands::blur(int argc, char** argv) {
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
+  examples::add_count(app, "--ghosts", options.ghosts, {0, 576, "a whole number from 0 to 576"},
+                      "add the ghosts of so many parts of the picture, the brightest above --highlights-above: "
+                      "reflections between the surfaces of the lens, as of petzval ghosts; 8 suit most pictures. Also "
+                      "the channels ghosts.R, .G and .B of blur.exr")
+      ->default_str("0");
   examples::add_out_file(
       app, options.deep_out,
       "deep picture of the samples of --deep that --holdout leaves, not blurred, with depths along the axis in mm",

@@ -37,6 +37,7 @@
 #include "renderer/scene_json.hpp"
 #include "renderer/scene_model.hpp"
 #include "renderer/shards.hpp"
+#include "support/bokeh.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
@@ -125,18 +126,6 @@ void write_results(const renderer::PictureSums& sums, Json job, const Json& abou
   say(folder / "tiles.json"), say(folder / "render.json");
 }
 
-/// Irradiance on the axis of the film for a sky of radiance 1.
-double irradiance_on_axis(const petzval::Camera& camera) {
-  constexpr std::uint32_t count = 4096;
-  double sum = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto pupil = petzval::owen_sobol(i, 0);
-    sum += camera.sample({.film = {0, 0}, .pupil_u = pupil.x, .pupil_v = pupil.y}).weight / count;
-  }
-  if (!(sum > 0)) throw petzval::Error(camera.lens().name() + ": no light reaches the axis");
-  return sum;
-}
-
 std::string file_checksum(const std::string& file) {
   return file.empty() ? "" : petzval::checksum(examples::read_text(file));
 }
@@ -217,7 +206,8 @@ class Job {
       petzval::CameraSetup radiometric = setup_;
       radiometric.camera.normalisation = petzval::Normalisation::irradiance;
       radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
-      const double scale = job.at("white").get<double>() / irradiance_on_axis(petzval::camera(radiometric, lens_));
+      const double scale =
+          job.at("white").get<double>() / examples::irradiance_on_axis(petzval::camera(radiometric, lens_));
       const auto lights = renderer::ghost_lights(scene_, lens, options_.ghosts, options_.seed);
       guides.merge(renderer::ghosts(lens.camera(), lights, colours_, scale, examples::threads()));
     }
@@ -385,7 +375,7 @@ class Job {
 
   Json description_of_numbers(const petzval::Camera& camera) const {
     double white = 1;
-    if (setup_.camera.normalisation == petzval::Normalisation::irradiance) white = irradiance_on_axis(camera);
+    if (setup_.camera.normalisation == petzval::Normalisation::irradiance) white = examples::irradiance_on_axis(camera);
     std::string glasses;
     for (const std::string& file : setup_.lens.glass_files) glasses += file_checksum(file);
     return {{"scene", renderer::checksum(scene_.description())},

@@ -138,6 +138,17 @@ petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::
   return petzval::render(psf, rgb_weights(psf.wavelengths_nm, light));
 }
 
+double irradiance_on_axis(const petzval::Camera& camera) {
+  constexpr std::uint32_t count = 4096;
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto pupil = petzval::owen_sobol(i, 0);
+    sum += camera.sample({.film = {0, 0}, .pupil_u = pupil.x, .pupil_v = pupil.y}).weight / count;
+  }
+  if (!(sum > 0)) throw petzval::Error(camera.lens().name() + ": no light reaches the axis");
+  return sum;
+}
+
 petzval::RgbImage ghost_picture(const petzval::Lens& lens, const petzval::ScenePoint& light, const petzval::Film& film,
                                 std::span<const std::array<double, 3>> weights, const petzval::GhostOptions& options) {
   petzval::RgbImage image(film.columns, film.rows);

@@ -66,6 +66,10 @@ petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::
 /// @throws petzval::Error if the wavelengths are invalid
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light);
 
+/// Irradiance on the axis of the film for a sky of radiance 1.
+/// @throws petzval::Error if no light reaches the axis
+double irradiance_on_axis(const petzval::Camera& camera);
+
 /// The ghosts of a light: petzval::add_ghosts() at each wavelength of the lens, times its weights for R, G and B.
 petzval::RgbImage ghost_picture(const petzval::Lens& lens, const petzval::ScenePoint& light, const petzval::Film& film,
                                 std::span<const std::array<double, 3>> weights, const petzval::GhostOptions& options);
