@@ -57,6 +57,8 @@ struct Polygon {
   }
 };
 
+constexpr double lost = -1;  // the margin of rays that miss a surface or are totally reflected
+
 /// The part of the unit square about the origin in which an interpolated margin is positive.
 /// @param margins at (-,-), (+,-), (+,+), (-,+)
 Polygon inside(const std::array<double, 4>& margins) noexcept {
@@ -67,7 +69,9 @@ Polygon inside(const std::array<double, 4>& margins) noexcept {
     const std::size_t next = (k + 1) % 4;
     const double a = margins[k], b = margins[next];
     if (a > 0) add(corners[k]);
-    if ((a > 0) != (b > 0)) add(corners[k] + (corners[next] - corners[k]) * (a / (a - b)));
+    // A ray that is lost without a rim gives no distance: on average, light ends at half of the side.
+    const double end = a == lost || b == lost ? 0.5 : a / (a - b);
+    if ((a > 0) != (b > 0)) add(corners[k] + (corners[next] - corners[k]) * end);
   }
   return result;
 }
@@ -250,8 +254,8 @@ std::vector<double> LightPath::margins(const Entrance& entrance, std::span<const
                                    {.wavelengths = {.all = wavelength}, .apertures = false});
   // From 1 - r^2 / R^2, or v / (1 - v) below 0, to 1 - r / R, which is nearly linear across a rim.
   for (double& value : result) {
-    const double square = value >= 0 ? 1 - value : value > -1 ? 1 - value / (1 + value) : 4;
-    value = 1 - std::min(std::sqrt(std::max(square, 0.0)), 10.0);
+    const double square = value >= 0 ? 1 - value : 1 - value / (1 + value);
+    value = value > -1 ? 1 - std::min(std::sqrt(std::max(square, 0.0)), 10.0) : lost;
   }
   return result;
 }

@@ -290,6 +290,24 @@ TEST(GhostLaws, ThreadsDoNotMatter) {
   }
 }
 
+// A front surface that turns away from the light: rays miss it inside of its rim.
+TEST(GhostLaws, LightEntersSteepFrontsUpToTheirOutline) {
+  const Lens lens = petzval::testing::data_lens("hologon_15mm_f8");
+  const testing::PlainLens plain(lens);
+  for (const double degrees : {0.0, 22.5, 45.0}) {
+    const double angle = radians(degrees), half = 2 * plain.surfaces[0].rim, step = half / 500;
+    const testing::V d{0, std::sin(angle), std::cos(angle)};
+    int entered = 0;
+    for (int k = 0; k < 1'000'000; ++k) {
+      const double x = (k % 1000 + 0.5) * step - half, y = (k / 1000 + 0.5) * step - half;
+      testing::V normal;
+      if (plain.meet(0, {x, y * d.z, -y * d.y}, d, normal)) ++entered;
+    }
+    const double area = entered * step * step;
+    EXPECT_NEAR(ghost_pairs(lens, far_light(-degrees), {.only = {{0, 1}}}).entering_mm2, area, 1e-3 * area) << degrees;
+  }
+}
+
 TEST(GhostLaws, RefusesBadInput) {
   const Lens lens = compile(plate());
   const auto refused = [&](const ScenePoint& light, std::vector<petzval::testing::Token> tokens,

@@ -73,7 +73,8 @@ struct PlainLens {
     const Surface& own = surfaces[i];
     const V p = origin - V{0, 0, own.z};
     double t = 0;
-    if (own.curvature == 0) {
+    const bool asphere = own.conic != 0 || !own.terms.empty();
+    if (own.curvature == 0 || asphere) {
       if (d.z == 0) return {};
       t = -p.z / d.z;
       normal = {0, 0, 1};
@@ -88,7 +89,7 @@ struct PlainLens {
       if (std::abs(p.z + d.z * t) > std::abs(radius)) return {};
       normal = glm::normalize(from + along * t);
     }
-    if (own.conic != 0 || !own.terms.empty()) {
+    if (asphere) {  // Newton's iteration from the plane
       for (int step = 0; step < 20; ++step) {
         const V at = p + d * t;
         const double r = std::hypot(at.x, at.y);
