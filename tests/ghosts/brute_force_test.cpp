@@ -120,7 +120,7 @@ class Tracer {
       if (!ray.step(lens_.surfaces.size())) return true;
     }
   }
-  /// Chooses one of the reflected rays; false if there is none.
+  /// Chooses one of the reflected rays; false if no surface reflects.
   bool choose(Branch& ray, double& weight, std::size_t surface) {
     if (only) std::erase_if(choices_, [&](const Branch& choice) { return choice.surface != surface; });
     double sum = 0;
@@ -228,7 +228,7 @@ void compare(const Case& of, int rays) {
     const auto at = [&](int square) { return scale * static_cast<double>(picture[static_cast<std::size_t>(square)]); };
     const double left = at(k % bins > 0 ? k - 1 : k), right = at(k % bins + 1 < bins ? k + 1 : k);
     const double above = at(k >= bins ? k - bins : k), below = at(k < bins * (bins - 1) ? k + bins : k);
-    // Of a picture: steps of 1 %, and edges within 0.1 pixels.
+    // Tolerance of pictures: steps of 1 %, and edges within 0.1 pixels.
     expected += at(k), edges += 0.05 * (std::abs(right - left) + std::abs(below - above));
     const Sum& own = t.picture[static_cast<std::size_t>(k)];
     sum.value += own.value, sum.squares += own.squares, sum.count += own.count;
@@ -254,7 +254,7 @@ TEST(BruteForce, RandomReflectionsEqualGhosts) {
   for (const Case& of : {cases[0], cases[1], cases[2]}) compare(of, 1'000'000);
 }
 
-// Light that enters along an arc, and in a disc with a ring around it.
+// Light enters along an arc, and in a disc inside of a ring.
 TEST(BruteForce, PairsOfArcsAndRingsAreComplete) {
   for (const auto& [name, degrees, first, second] :
        {std::tuple{"modern_50mm_f1.0", 11.65, 3U, 9U}, {"fisheye_10mm_f4", 0.0, 1U, 3U}}) {
