@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "area_raster.hpp"
+#include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
@@ -82,59 +83,109 @@ struct Image {
   bool reached = false;
 };
 
-/// Transmittances of the rays of a box. They vary slowly: cubic interpolation between exact rays on the coarsest grid
-/// that suffices. Near edges of the transmittance each ray is traced.
+/// A polynomial of the position in a box, from -1 to 1, in Chebyshev terms up to a total degree.
+class Fit {
+ public:
+  Fit(int degree, std::span<const Vec2<double>> positions, std::span<const double> values) : degree_(degree) {
+    Eigen::MatrixXd rows(positions.size(), (degree + 1) * (degree + 2) / 2);
+    Eigen::VectorXd wanted(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      terms(positions[i], [&](Eigen::Index k, double value) { rows(row, k) = value; });
+      wanted(row) = values[i];
+    }
+    factors_ = core_detail::least_squares(rows, wanted);
+    error_ = (rows * factors_ - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().mean();
+  }
+  /// Largest residual, relative to the mean.
+  double error() const noexcept { return error_; }
+  double operator()(const Vec2<double>& at) const noexcept {
+    double sum = 0;
+    terms(at, [&](Eigen::Index k, double value) { sum += factors_(k) * value; });
+    return std::max(sum, 0.0);
+  }
+
+ private:
+  static constexpr int most = 8;
+
+  void terms(const Vec2<double>& at, const auto& take) const noexcept {
+    std::array<double, most + 1> x{1, at.x}, y{1, at.y};
+    for (std::size_t k = 2; k <= static_cast<std::size_t>(degree_); ++k) {
+      x[k] = 2 * at.x * x[k - 1] - x[k - 2], y[k] = 2 * at.y * y[k - 1] - y[k - 2];
+    }
+    Eigen::Index k = 0;
+    for (int i = 0; i <= degree_; ++i) {
+      for (int j = 0; i + j <= degree_; ++j) take(k++, x[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(j)]);
+    }
+  }
+
+  int degree_;
+  Eigen::VectorXd factors_;
+  double error_ = 0;
+};
+
+/// Transmittances of the rays of a box. They vary slowly: a polynomial through some exact rays or, if it does not fit,
+/// cubic interpolation between exact rays on a grid. Near edges of the transmittance each ray is traced.
 class Transmittances {
  public:
   /// @param exact exact(at): the transmittance at a position from -1 to 1, or nullopt
   Transmittances(std::span<const Vec2<double>> positions, std::function<std::optional<double>(Vec2<double>)> exact)
       : exact_(std::move(exact)) {
-    constexpr double tolerance = 5e-4;
-    constexpr std::size_t checks = 12;
-    std::array<double, checks> values{};
-    double sum = 0;
-    for (const int side : {5, 7, 11, finest}) {
-      if (positions.size() < 2 * static_cast<std::size_t>(side * side)) break;
-      side_ = side, nodes_.assign(static_cast<std::size_t>(side * side), unknown), error_ = 0, exact_rays_ = 0;
-      for (std::size_t k = 0; k < checks; ++k) {
-        const Vec2<double>& at = positions[k * (positions.size() - 1) / (checks - 1)];
-        if (side == 5) sum += values[k] = exact_(at).value_or(0);
-        error_ += std::abs((*this)(at)-values[k]);
+    constexpr double tolerance = 1e-3;
+    for (const int degree : {4, 8}) {
+      const auto samples = static_cast<std::size_t>(3 * (degree + 1) * (degree + 2) / 2);
+      if (positions.size() < 2 * samples) return;
+      std::vector<Vec2<double>> at;
+      std::vector<double> values;
+      for (std::size_t k = 0; k < samples; ++k) {
+        at.push_back(positions[k * (positions.size() - 1) / (samples - 1)]);
+        values.push_back(exact_(at.back()).value_or(0));
       }
-      error_ = sum > 0 ? error_ / sum : 0;
-      if (error_ < tolerance && exact_rays_ < checks / 4) return;
+      fit_.emplace(degree, at, values);
+      if (fit_->error() < tolerance) return;
+      fit_.reset();
     }
+    if (positions.size() < static_cast<std::size_t>(side * side)) return;
+    nodes_.assign(static_cast<std::size_t>(side * side), unknown);
+    // The error of the interpolation at some of the rays.
+    double sum = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+      const Vec2<double>& at = positions[k * (positions.size() - 1) / 15];
+      const double value = exact_(at).value_or(0);
+      sum += value / 16, grid_error_ += std::abs((*this)(at)-value) / 16;
+    }
+    grid_error_ = sum > 0 ? grid_error_ / sum : 0;
   }
 
-  /// Mean error, relative to the mean.
-  double error() const noexcept { return error_; }
+  /// Error relative to the mean: the largest of a polynomial, the mean of a grid.
+  double error() const noexcept { return fit_ ? fit_->error() : grid_error_; }
 
   double operator()(const Vec2<double>& at) {
+    if (fit_) return (*fit_)(at);
     if (nodes_.empty()) return exact_(at).value_or(0);
-    const Vec2<double> q = (at + 1.0) * ((side_ - 1) / 2.0);
-    const int x = std::clamp(static_cast<int>(q.x), 1, side_ - 3), y = std::clamp(static_cast<int>(q.y), 1, side_ - 3);
+    const Vec2<double> q = (at + 1.0) * ((side - 1) / 2.0);
+    const int x = std::clamp(static_cast<int>(q.x), 1, side - 3), y = std::clamp(static_cast<int>(q.y), 1, side - 3);
     const auto wx = weights(q.x - x), wy = weights(q.y - y);
     double sum = 0;
     std::array<double, 4> inner{};
     for (int j = 0; j < 4; ++j) {
       for (int i = 0; i < 4; ++i) {
         const double value = node(x + i - 1, y + j - 1);
-        if (value == lost) return traced(at);
+        if (value == lost) return exact_(at).value_or(0);
         if (i % 3 != 0 && j % 3 != 0) inner[static_cast<std::size_t>(2 * j + i - 3)] = value;
         sum += value * wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)];
       }
     }
-    if (side_ < finest) return sum;
     // Near total reflection, transmittances have edges.
     const auto [least, most] = std::ranges::minmax(inner);
     const double linear =
         std::lerp(std::lerp(inner[0], inner[1], q.x - x), std::lerp(inner[2], inner[3], q.x - x), q.y - y);
     const bool smooth = most - least < 0.3 * linear && std::abs(sum - linear) < 0.02 * linear;
-    return smooth ? sum : traced(at);
+    return smooth ? sum : exact_(at).value_or(0);
   }
 
  private:
-  static constexpr int finest = 24;
+  static constexpr int side = 24;
   static constexpr double unknown = -2, lost = -1;
 
   /// Lagrange's weights of the nodes -1, 0, 1 and 2.
@@ -142,21 +193,16 @@ class Transmittances {
     return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
             (t + 1) * t * (t - 1) / 6};
   }
-  double traced(const Vec2<double>& at) {
-    ++exact_rays_;
-    return exact_(at).value_or(0);
-  }
   double node(int x, int y) {
-    double& value = nodes_[static_cast<std::size_t>(y * side_ + x)];
-    if (value == unknown) value = exact_(Vec2<double>(x, y) * (2.0 / (side_ - 1)) - 1.0).value_or(lost);
+    double& value = nodes_[static_cast<std::size_t>(y * side + x)];
+    if (value == unknown) value = exact_(Vec2<double>(x, y) * (2.0 / (side - 1)) - 1.0).value_or(lost);
     return value;
   }
 
   std::function<std::optional<double>(Vec2<double>)> exact_;
-  int side_ = 0;
-  std::size_t exact_rays_ = 0;
+  std::optional<Fit> fit_;
   std::vector<double> nodes_;
-  double error_ = 0;
+  double grid_error_ = 0;
 };
 
 /// Corners of cells, [row * (cells + 1) + column].
