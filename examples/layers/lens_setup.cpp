@@ -254,11 +254,9 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time, do
 }
 
 petzval::RgbImage BlurLens::ghosts(std::span<const BrightPart> parts, int threads) const {
-  if (model() != petzval::ModelKind::exact_float) {
-    throw petzval::Error(
-        "--ghosts: a thin lens, a focal surface and an expressive lens have no surfaces; must be a lens of surfaces");
-  }
+  // The picture is 1 on the axis after the losses at the surfaces.
   petzval::CameraSetup radiometric = view_.setup;
+  radiometric.camera.transmission = true;
   radiometric.camera.model = model(), radiometric.camera.normalisation = petzval::Normalisation::irradiance;
   radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
   const double scale = 1 / examples::irradiance_on_axis(petzval::camera(radiometric, view_.lens));

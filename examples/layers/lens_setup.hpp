@@ -65,8 +65,7 @@ class BlurLens {
   /// camera has moved to the right; focus points over time stay in the world.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0, double travelled_mm = 0);
 
-  /// The ghosts of bright parts of a picture, in its unit.
-  /// @throws petzval::Error if the lens has no surfaces, or has rays that differ from those of its surfaces
+  /// The ghosts of bright parts of a picture, in its unit, from the surfaces of the lens.
   petzval::RgbImage ghosts(std::span<const BrightPart> parts, int threads) const;
 
  private:

@@ -107,6 +107,11 @@ class Job {
     if (options.compare_rays > 0 && options.frames > 1) {
       throw petzval::Error("--compare-rays: --frames = " + std::to_string(options.frames) + "; must be 1");
     }
+    if (options.ghosts > 0 && lens_.model() != petzval::ModelKind::exact_float) {
+      throw petzval::Error("--ghosts = " + std::to_string(options.ghosts) +
+                           "; must not be used with a thin lens, a focal surface or an expressive lens, which have no "
+                           "surfaces");
+    }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (side_ > 1 && !options.deep_out.empty()) {
       throw petzval::Error("--deep-out: --supersample = " + std::to_string(side_) + "; must be 1");

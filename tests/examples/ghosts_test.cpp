@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval ghosts: its report, its pictures and its lights.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -77,6 +78,46 @@ TEST_F(GhostsProgram, CoatingsAndThreads) {
   const json coated = ghosts({"--light", "5,4", "--coatings", "mgf2"}, "coated");
   EXPECT_LT(coated["audit"]["ghosts"].get<double>(), plain["audit"]["ghosts"].get<double>() / 5);
   EXPECT_GT(coated["audit"]["image"], plain["audit"]["image"]);
+}
+
+// A pixel of a picture, far away, is a light like that of petzval ghosts.
+TEST_F(GhostsProgram, OfABlurredPixelHaveTheirShareOfItsLight) {
+  petzval::RgbImage picture(60, 40), depth(60, 40);
+  picture.pixel(40, 12)[1] = 1e6f;
+  std::fill(depth.pixels.begin(), depth.pixels.end(), 1e9f);
+  petzval::write_pfm(picture, path("picture.pfm"));
+  petzval::write_pfm(depth, path("depth.pfm"));
+  const auto blurred = [&](const std::string& out, const Arguments& more) {
+    Arguments arguments{"--image",
+                        path("picture.pfm"),
+                        "--depth",
+                        path("depth.pfm"),
+                        "double_gauss_52mm_f1.8",
+                        "--focus",
+                        "inf",
+                        "--rays",
+                        "64",
+                        "--out",
+                        path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run("blur", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return petzval::read_exr_parts(path(out + "/blur.exr")).at(0).channels;
+  };
+  auto with = blurred("with", {"--ghosts", "3"}), without = blurred("without", {});
+  for (std::size_t i = 0; i < with["G"].size(); ++i) {
+    EXPECT_NEAR(with["G"][i], without["G"][i] + with["ghosts.G"][i], 1e-6f * with["G"][i]);
+  }
+  const json share = read_json(path("with/blur.json"))["ghosts"];
+  EXPECT_EQ(share["lights"], 1);
+  const json alone = ghosts({"--light", "40.5px,12.5px", "--focus", "inf"});
+  const double expected = power(alone) / alone["audit"]["image"].get<double>();
+  EXPECT_NEAR(share["fraction"].get<double>(), expected, 0.05 * expected);
+
+  const Outcome thin = run("blur", {"--image", path("picture.pfm"), "--depth", path("depth.pfm"), "--thin-lens", "50",
+                                    "--f-number", "2", "--focus", "2000", "--ghosts", "3", "--out", path("thin")});
+  EXPECT_NE(thin.status, 0);
+  EXPECT_NE(thin.err.find("--ghosts"), std::string::npos) << thin.err;
 }
 
 }  // namespace
