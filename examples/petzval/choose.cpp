@@ -51,9 +51,9 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
   return petzval::model_error(lens, options.film(), model, samples).all.max_px;
 }
 
-/// The radiance of a lamp of 1 degree diameter, relative to its surroundings, at which the mean irradiance of its
-/// brightest ghost is 1 % of the surroundings; infinite if no ghost reaches the film. The image of the lamp lies at 0.7
-/// of the half diagonal of the film. NaN if the lens has no ghosts there: as petzval::ghost_pairs().
+/// The radiance of a lamp of 1 degree diameter, relative to its surroundings, below which its brightest ghost stays
+/// under 1 % of the surroundings; infinite if no ghost reaches the film, NaN if petzval::ghost_pairs() throws. The
+/// image of the lamp lies at 0.7 of the half diagonal of the film.
 double contrast_limit(const petzval::Lens& lens, const petzval::Film& film) try {
   constexpr double pi = std::numbers::pi;
   const double lamp_rad = petzval::radians(0.5), f_number = petzval::real_f_number(lens);
@@ -71,8 +71,8 @@ double contrast_limit(const petzval::Lens& lens, const petzval::Film& film) try 
     });
     if (same == of_rim.pairs.end() || !film.contains(pair.centre)) continue;
     const double shift = std::hypot(same->centre.x - pair.centre.x, same->centre.y - pair.centre.y);
-    const double area = pi * (2 * pair.rms_radius_mm * pair.rms_radius_mm + shift * shift);  // as a uniform disc
-    brightest = std::max(brightest, pair.energy * ghosts.entering_mm2 / area);
+    const double blurred = pair.energy / (pi * shift * shift);  // the ghost of a point is smaller than its shift
+    brightest = std::max(brightest, ghosts.entering_mm2 * std::min(pair.peak_per_mm2, blurred));
   }
   return 0.01 * pi / (4 * f_number * f_number) / (brightest * pi * lamp_rad * lamp_rad);
 } catch (const petzval::Error&) {

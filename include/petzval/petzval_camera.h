@@ -21,11 +21,11 @@
  *     #define PETZVAL_GLSL
  *     #define PETZVAL_TABLE(i) camera_table[i]
  *
- * Functions: pz_valid, pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect and
- * pz_pdf. Other functions are internal. Frame of the lens: z runs along the axis from the scene to the film; the vertex
- * of the first surface is at 0. Lengths are in mm, wavelengths in nm. Fates of rays: 0 transmitted, 1 missed a surface,
- * 2 total reflection, 3 clipped by an aperture, 5 outside the fit of a polynomial, 6 outside the film, 7 invalid, 8
- * outside the wavelengths of the table.
+ * Functions: pz_valid, pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect, pz_pdf
+ * and pz_ghost_of. Other functions are internal. Frame of the lens: z runs along the axis from the scene to the film;
+ * the vertex of the first surface is at 0. Lengths are in mm, wavelengths in nm. Fates of rays: 0 transmitted, 1 missed
+ * a surface, 2 total reflection, 3 clipped by an aperture, 5 outside the fit of a polynomial, 6 outside the film, 7
+ * invalid, 8 outside the wavelengths of the table.
  *
  * Accuracy: as the float rays of the library; the distance to these rays is at most 8 float eps for most lenses of
  * data/ and up to 30 for fisheyes, whose float rays are up to 20 eps from exact rays
@@ -161,6 +161,12 @@ PZ_STRUCT(pz_connection) {
   pz_vector end;       /* of the shadow ray, on the front of the lens */
   float pdf;           /* 1/sr; 0 if there is no connection */
   pz_arrival arrival;
+};
+/* A ray of the scene at the film after two reflections in the lens. */
+PZ_STRUCT(pz_ghost) {
+  pz_point film;
+  float weight; /* fraction of the power of the ray; 0 if the ray is lost */
+  int fate;
 };
 
 /* ---- Small functions ---- */
@@ -711,8 +717,8 @@ PZ_FN pz_beam pz_stopped(pz_beam b, int fate) {
   return b;
 }
 /* One surface. n2: squared index in front of it; k: change of the squared index; clips: apertures clip the ray; follow:
- * with derivatives */
-PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, PZ_BOOL follow) {
+ * with derivatives; reflects: as a mirror */
+PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, PZ_BOOL follow, PZ_BOOL reflects) {
   float c = PZ_AT(surface + 2), e = PZ_AT(surface + 3), ax = PZ_AT(surface + 4), ay = PZ_AT(surface + 5), shift, r2, d;
   int asphere = pz_whole(PZ_P surface + 10);
   PZ_BOOL sphere = asphere == 0 && e == 1.0f && ax * ay == 1.0f, found = PZ_TRUE;
@@ -733,7 +739,7 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
   float root = PZ_SQRT(d > 0.0f ? d : 0.0f);
   s.p = p;
   s.twist = 0.0f;
-  s.mirror = PZ_AT(surface + 8) != 0.0f;
+  s.mirror = reflects || PZ_AT(surface + 8) != 0.0f;
   if (asphere == 0) {
     s.way = facing >= 0.0f ? free / (facing + root) : (facing - root) / quadratic;
     at = pz_along(at, s.way, p);
@@ -799,7 +805,7 @@ PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL 
     surface = list + i * PZ_SURFACE_SIZE;
     if (j > 0) b.ray.at.z -= to_film ? PZ_AT(surface - PZ_SURFACE_SIZE + 1) : -PZ_AT(surface + 1);
     float excess = pz_dot(b.ray.p, b.ray.p) - n2; /* refraction keeps it: p is too long by as much behind the surface */
-    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, clips, follow);
+    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, clips, follow, PZ_FALSE);
     if (b.fate != 0) return b;
     n2 = pz_number(PZ_P light, to_film ? 5 + i : 4 + i);
     b.ray.p = pz_times(1.0f - 0.5f * excess / n2, b.ray.p);
@@ -1195,6 +1201,63 @@ PZ_FN float pz_pdf(PZ_T pz_vector from, pz_vector direction, float nm) {
   pz_vector met = pz_times(s.distance / cosine, direction); /* from the point to the plane */
   area = pz_area_at(PZ_P s.pupil, pz_xy(pz_dot(met, s.right), pz_dot(met, s.up)));
   return area > 0.0f ? s.distance / area * s.distance / (cosine * cosine * cosine) : 0.0f;
+}
+
+/* ---- Ghosts ---- */
+
+/* The reflectances of an uncoated surface for s and p polarisation. p: in front of the surface; normal: of any length;
+ * n2, k: as in pz_pass(). */
+PZ_FN pz_point pz_reflectances(pz_vector p, pz_vector normal, float n2, float k) {
+  float before = pz_dot(p, normal) * pz_dot(p, normal) / pz_dot(normal, normal), behind = before + k, s, t;
+  if (k == 0.0f) return pz_xy(0.0f, 0.0f);
+  if (!(behind > 0.0f)) return pz_xy(1.0f, 1.0f);
+  before = PZ_SQRT(before);
+  behind = PZ_SQRT(behind);
+  s = (before - behind) / (before + behind);
+  t = ((n2 + k) * before - n2 * behind) / ((n2 + k) * before + n2 * behind);
+  return pz_xy(s * s, t * t);
+}
+/* Follows a ray of the scene, with unit direction into the lens, to the surface `second`, back to `first` and on to the
+ * film. Surfaces count from 0, first < second; mirrors of the lens form no pairs (fate 7). Rims and iris clip at every
+ * passage. The weight is the mean for s and p polarisation of the product of the reflectances and transmittances, with
+ * uncoated surfaces, one plane of incidence for all surfaces, and glasses that absorb no light. */
+PZ_FN pz_ghost pz_ghost_of(PZ_T pz_vector origin, pz_vector direction, int first, int second, float nm) {
+  pz_ghost ghost;
+  pz_light light = pz_light_of(PZ_P nm);
+  pz_beam b;
+  int count = pz_whole(PZ_P PZ_SURFACE_COUNT), list = pz_whole(PZ_P PZ_SURFACES), turns = 0, i = 0;
+  float z = 0.0f, length2 = pz_dot(direction, direction), along = pz_dot(origin, direction);
+  PZ_BOOL pair = first >= 0 && first < second && second < count && PZ_AT(list + first * PZ_SURFACE_SIZE + 8) == 0.0f &&
+                 PZ_AT(list + second * PZ_SURFACE_SIZE + 8) == 0.0f;
+  pz_point weight = pz_xy(1.0f, 1.0f), r;
+  ghost.film = pz_xy(0.0f, 0.0f);
+  ghost.weight = 0.0f;
+  ghost.fate = light.nearest < 0 ? 8 : pair && pz_finite(along) && pz_abs(length2 - 1.0f) < 1.0e-3f ? 0 : 7;
+  if (ghost.fate != 0) return ghost;
+  b.ray.at = pz_along(origin, -along, direction);
+  b.ray.p = pz_times((1.5f - 0.5f * length2) * pz_scene_index(PZ_P light), direction);
+  b.fate = 0;
+  while (i < count) {
+    int surface = list + i * PZ_SURFACE_SIZE;
+    PZ_BOOL reflects = turns < 2 && i == (turns == 0 ? second : first);
+    float n2 = pz_number(PZ_P light, (turns == 1 ? 5 : 4) + i);
+    float k = (turns == 1 ? -1.0f : 1.0f) * pz_number(PZ_P light, 5 + count + i);
+    pz_vector p = b.ray.p;
+    b.ray.at.z -= PZ_AT(surface) - z;
+    z = PZ_AT(surface);
+    b = pz_pass(PZ_P b, surface, n2, k, PZ_TRUE, PZ_FALSE, reflects);
+    ghost.fate = b.fate;
+    if (b.fate != 0) return ghost;
+    r = pz_reflectances(p, pz_along(p, reflects ? 1.0f : -1.0f, b.ray.p), n2, k);
+    weight = pz_xy(weight.x * (reflects ? r.x : 1.0f - r.x), weight.y * (reflects ? r.y : 1.0f - r.y));
+    if (reflects) ++turns;
+    i += turns == 1 ? -1 : 1;
+  }
+  b.ray.at.z += z;
+  ghost.film = pz_in_z_plane(b.ray, PZ_AT(PZ_FILM_Z));
+  ghost.fate = !pz_finite(ghost.film.x + ghost.film.y) ? 1 : pz_on_film(PZ_P ghost.film) ? 0 : 6;
+  if (ghost.fate == 0) ghost.weight = 0.5f * (weight.x + weight.y);
+  return ghost;
 }
 
 #endif /* PETZVAL_CAMERA_H */

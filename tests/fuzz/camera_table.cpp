@@ -81,6 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pz_vector origin = ray.ray.fate == 0 ? ray.ray.origin : pz_xyz(x, y, number(-9, 0));
     const pz_vector out = ray.ray.fate == 0 ? ray.ray.direction : pz_xyz(0, 0, -1), in = pz_xyz(-out.x, -out.y, -out.z);
     pz_raster(pz_importance(origin, in, nm).film);
+    pz_raster(pz_ghost_of(origin, in, static_cast<int>(nm) % 8 - 1, static_cast<int>(nm) % 9, nm).film);
     const pz_vector from = pz_along(origin, number(0, 5000), out);
     const pz_connection c = pz_connect(from, u, v, nm);
     pz_pdf(from, c.direction, nm);
