@@ -20,26 +20,26 @@
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/number_csv.hpp"
-#include "support/rays_csv.hpp"
 #include "support/text.hpp"
 
 namespace {
 
-using examples::RayTable;
+constexpr std::array<examples::CsvColumn, 6> columns{{{"x_mm"}, {"y_mm"}, {"z_mm"}, {"dx"}, {"dy"}, {"dz"}}};
+/// Rays by column.
+using Rays = std::vector<std::vector<double>>;
 
 /// Normalizes directions of any length to unit vectors in double.
-void normalise(RayTable& rays) {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+void normalise(Rays& rays, const std::string& where) {
+  for (std::size_t i = 0; i < rays[3].size(); ++i) {
+    double &dx = rays[3][i], &dy = rays[4][i], &dz = rays[5][i];
     // Scaled by a power of two first, so that very small and large components lose no digits.
-    const double largest = std::max({std::abs(rays.dx[i]), std::abs(rays.dy[i]), std::abs(rays.dz[i])});
-    const int exponent = std::ilogb(largest);
-    const double x = std::scalbn(rays.dx[i], -exponent);
-    const double y = std::scalbn(rays.dy[i], -exponent);
-    const double z = std::scalbn(rays.dz[i], -exponent);
-    const double length = std::sqrt(x * x + y * y + z * z);
-    rays.dx[i] = x / length;
-    rays.dy[i] = y / length;
-    rays.dz[i] = z / length;
+    const double largest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
+    if (largest == 0) {
+      throw petzval::Error(examples::line_of_row(where, i) + ": direction = 0,0,0; must have a nonzero length");
+    }
+    for (double* const component : {&dx, &dy, &dz}) *component = std::scalbn(*component, -std::ilogb(largest));
+    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+    dx /= length, dy /= length, dz /= length;
   }
 }
 
@@ -58,14 +58,13 @@ std::vector<T> rounded(const std::vector<double>& values, const std::string& whe
 }
 
 template <class T>
-std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const petzval::TraceOptions& options,
+std::string traced_csv(const petzval::Lens& lens, const Rays& rays, const petzval::TraceOptions& options,
                        const std::string& where) {
-  const auto x = rounded<T>(rays.x, where, "x_mm"), y = rounded<T>(rays.y, where, "y_mm"),
-             z = rounded<T>(rays.z, where, "z_mm");
-  const auto dx = rounded<T>(rays.dx, where, "dx"), dy = rounded<T>(rays.dy, where, "dy"),
-             dz = rounded<T>(rays.dz, where, "dz");
+  std::array<std::vector<T>, columns.size()> in;
+  for (std::size_t k = 0; k < in.size(); ++k) in[k] = rounded<T>(rays[k], where, columns[k].name);
+  const auto& [x, y, z, dx, dy, dz] = in;
   std::string csv = "x_mm,y_mm,z_mm,dx,dy,dz,fate,surface\n";
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
     const auto end = petzval::trace(lens, petzval::Ray<T>{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, options);
     const auto& [origin, direction] = end.ray;
     for (const T value : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z}) {
@@ -111,8 +110,8 @@ int commands::trace(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const auto loaded = examples::load_lens(lens_file, std::array{wavelength_nm});
-    RayTable rays = examples::parse_rays(examples::read_text(rays_file), rays_file);
-    normalise(rays);
+    Rays rays = examples::parse_columns(examples::read_text(rays_file), columns, rays_file);
+    normalise(rays, rays_file);
     const petzval::TraceOptions options{
         .travel = travel == "to_film" ? petzval::Travel::to_film : petzval::Travel::to_scene,
         .apertures = !ignore_apertures};
