@@ -208,7 +208,7 @@ class Job {
       radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
       const double scale =
           job.at("white").get<double>() / examples::irradiance_on_axis(petzval::camera(radiometric, lens_));
-      const auto lights = renderer::ghost_lights(scene_, lens, options_.ghosts, options_.seed);
+      const auto lights = renderer::ghost_lights(scene_, lens, options_.ghosts, options_.seed, examples::threads());
       guides.merge(renderer::ghosts(lens.camera(), lights, colours_, scale, examples::threads()));
     }
     sums.set_guides(std::move(guides));

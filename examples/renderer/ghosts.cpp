@@ -9,6 +9,8 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_access.hpp>
 
+#include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
 #include "renderer/frame.hpp"
 #include "renderer/luminance.hpp"
@@ -45,13 +47,32 @@ std::array<double, 2> beam(const Scene& scene, const LensCamera& camera, const L
   return result;
 }
 
+/// Light of all ghosts for lights of equal irradiance at multiples of 10 degrees from the axis, at least 1 % of the
+/// most.
+std::array<double, 13> responses(const petzval::Lens& lens, int threads) {
+  std::array<double, 13> result{};
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const double angle = petzval::radians(10.0 * static_cast<double>(k)), across = std::sin(angle) / std::sqrt(2.0);
+    try {
+      const petzval::Ghosts ghosts = petzval::ghost_pairs(lens, {{across, across, -std::cos(angle)}, true},
+                                                          {.max_pairs = 200, .tolerance = 0.1, .threads = threads});
+      for (const petzval::GhostPair& pair : ghosts.pairs) result[k] += pair.energy * ghosts.entering_mm2;
+    } catch (const petzval::Error&) {  // no light enters the first surface
+    }
+  }
+  const double most = *std::ranges::max_element(result);
+  for (double& value : result) value = std::max({value, 0.01 * most, 1e-30});
+  return result;
+}
+
 }  // namespace
 
 std::vector<GhostLight> ghost_lights(const Scene& scene, const LensCamera& lens, std::uint32_t count,
-                                     std::uint32_t seed) {
+                                     std::uint32_t seed, int threads) {
   const std::uint32_t candidates = 64 * count;
   Random random(seed, candidates, 0);
   const float first = random();
+  const auto response = responses(lens.camera().lens(), threads);
   std::vector<GhostLight> lights, kept;
   std::vector<double> ends{0};
   for (std::uint32_t i = 0; i < candidates; ++i) {
@@ -67,10 +88,14 @@ std::vector<GhostLight> ghost_lights(const Scene& scene, const LensCamera& lens,
       irradiance *= glm::dot(glm::dvec3(from.surface->normal), to) / std::pow(glm::length(to), 3);
     }
     const auto [area, free] = beam(scene, lens, from, point);
-    const double power = luminance(from.radiance) * irradiance * free;
-    if (!(power > 0) || area < 1e-3) continue;  // grazing
-    lights.push_back({point, from.radiance / static_cast<float>(luminance(from.radiance) * area)});
-    ends.push_back(ends.back() + power);
+    if (!(free > 0 && irradiance > 0) || area < 1e-3) continue;  // grazing
+    const double at_10 =
+        petzval::degrees(std::atan2(std::hypot(point.position.x, point.position.y), -point.position.z)) / 10;
+    const auto k = std::min(static_cast<std::size_t>(at_10), response.size() - 2);
+    const double value =
+        luminance(from.radiance) * std::lerp(response[k], response[k + 1], std::min(at_10 - double(k), 1.0));
+    lights.push_back({point, from.radiance / static_cast<float>(value)});
+    ends.push_back(ends.back() + value * irradiance * free / area);
   }
   for (std::uint32_t k = 0; k < count && !lights.empty(); ++k) {
     const double at = (k + double{random()}) / count * ends.back();

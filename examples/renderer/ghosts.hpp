@@ -10,16 +10,16 @@
 
 namespace renderer {
 
-/// A light whose ghosts stand for the ghosts of an equal part of the light that enters the lens.
+/// A light whose ghosts stand for the ghosts of an equal part of the light of all ghosts.
 struct GhostLight {
   petzval::ScenePoint point;  ///< lens frame
   Rgb irradiance{0, 0, 0};    ///< at the front vertex, across the beam
 };
 
-/// Samples the lamps and the sky by their power on the first surface of the lens, from 64 candidates for each light.
-/// The part of the beam that objects stop does not count. Lights behind the first surface are left out.
+/// Samples the lamps and the sky by the light of their ghosts, from 64 candidates for each light. The part of the beam
+/// that objects stop does not count. Lights behind the first surface are left out.
 std::vector<GhostLight> ghost_lights(const Scene& scene, const LensCamera& lens, std::uint32_t count,
-                                     std::uint32_t seed);
+                                     std::uint32_t seed, int threads);
 
 /// The ghosts of lights as irradiance times `scale`: channels ghosts.R, .G and .B. Light of all wavelengths counts at
 /// the nearest compiled wavelength.
