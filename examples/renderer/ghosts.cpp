@@ -57,7 +57,8 @@ std::array<double, 13> responses(const petzval::Lens& lens, int threads) {
       const petzval::Ghosts ghosts = petzval::ghost_pairs(lens, {{across, across, -std::cos(angle)}, true},
                                                           {.max_pairs = 200, .tolerance = 0.1, .threads = threads});
       for (const petzval::GhostPair& pair : ghosts.pairs) result[k] += pair.energy * ghosts.entering_mm2;
-    } catch (const petzval::Error&) {  // no light enters the first surface
+    } catch (const petzval::Error&) {  // no light enters from the side
+      if (k == 0) throw;
     }
   }
   const double most = *std::ranges::max_element(result);
