@@ -44,7 +44,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Options {
   examples::CameraFlags setup;
-  std::string light, coatings, pairs = "all", white_point = "D65", out_folder;
+  std::string light, coatings, pairs = "all", model = "exact", white_point = "D65", out_folder;
   std::vector<double> wavelengths_nm{430, 460, 490, 520, 550, 580, 610, 640, 670};
   std::uint32_t width = 0, height = 0;
   double film_reflectance = 0, exposure = 1;
@@ -174,11 +174,18 @@ int commands::ghosts(int argc, char** argv) {
   examples::add_white_point(app, options.white_point);
   examples::add_camera(app, options.setup);
   examples::add_picture_size(app, options.width, options.height, usual_columns);
+  app.add_option(
+         "--model", options.model,
+         "exact rays, or paraxial: first order, one polygon of uniform light for each pair, in a fraction of the "
+         "time")
+      ->one_of({"exact", "paraxial"})
+      ->capture_default_str();
   app.add_option("--pairs", options.pairs, "number of pairs, the brightest ones, or all")
       ->type_name("all|N")
       ->default_str("all");
-  app.add_flag("--starburst", starburst,
-               "adds the light that the edges of the pupil diffract: spikes of the blades about the image of the light");
+  app.add_flag(
+      "--starburst", starburst,
+      "adds the light that the edges of the pupil diffract: spikes of the blades about the image of the light");
   app.add_flag("--pair-layers", layers, "one layer of ghosts.exr for each pair: pair_I_J.R, .G and .B");
   examples::add_number(app, "--film-reflectance", options.film_reflectance, {0, 1, "a number from 0 to 1"},
                        "reflectance of the film, which is then the first mirror of more pairs");
@@ -203,6 +210,7 @@ int commands::ghosts(int argc, char** argv) {
     const Light light = light_of(options, camera);
 
     petzval::GhostOptions ghost{.film_reflectance = options.film_reflectance, .threads = examples::threads()};
+    if (options.model == "paraxial") ghost.model = petzval::GhostModel::paraxial;
     petzval::Ghosts ghosts = petzval::ghost_pairs(lens, light.point, ghost);
     if (!coated) examples::note(lens.name() + ": the file states no coatings; all surfaces are uncoated");
     if (static_cast<double>(ghosts.pairs.size()) > most) ghosts.pairs.resize(static_cast<std::size_t>(most));

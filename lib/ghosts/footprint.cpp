@@ -15,6 +15,7 @@
 #include "area_raster.hpp"
 #include "core/least_squares.hpp"
 #include "core/text.hpp"
+#include "paraxial_ghost.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/clearances.hpp"
@@ -338,6 +339,11 @@ Box LightPath::region(const Entrance& entrance, Wavelength wavelength) const {
     box = {glm::max(box.low - size, entrance.box().low), glm::min(box.high + size, entrance.box().high)};
   }
   return {};
+}
+
+Footprint LightPath::paraxial(const Entrance& entrance, const Surfaces& surfaces, Wavelength wavelength,
+                              const Film& film) const {
+  return paraxial_footprint(path_, lens_, entrance, surfaces, wavelength, film);
 }
 
 double LightPath::entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const {

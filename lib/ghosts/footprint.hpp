@@ -75,6 +75,8 @@ class LightPath {
   /// @param frame film points, mm; deposits outside it are left out
   Footprint footprint(const Entrance& entrance, const Box& box, std::size_t cells, const Surfaces& surfaces,
                       Wavelength wavelength, const Film& film, const Box& frame) const;
+  /// The light to first order: paraxial_footprint().
+  Footprint paraxial(const Entrance& entrance, const Surfaces& surfaces, Wavelength wavelength, const Film& film) const;
   /// Area of the box whose rays pass the rims, times Entrance::flux().
   double entering(const Entrance& entrance, const Box& box, std::size_t cells, Wavelength wavelength) const;
 

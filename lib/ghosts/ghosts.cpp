@@ -92,17 +92,23 @@ GhostPair measured(const GhostPaths::Pair& of, const Footprint& light, double en
   Vec2<double> mean{0, 0}, low{1e300, 1e300}, high{-1e300, -1e300};
   double square = 0;
   bool mirrored = false, upright = false;
-  // The mean over a polygon, from triangles.
   for (const Deposit& deposit : light.deposits) {
-    Vec2<double> sum{0, 0};
-    double squares = 0;
-    for (const Vec2<double>& p : deposit.polygon()) sum += p, squares += glm::dot(p, p);
     const Box bounds = deposit.bounds();
     low = glm::min(low, bounds.low), high = glm::max(high, bounds.high);
-    sum /= static_cast<double>(deposit.count), squares /= static_cast<double>(deposit.count);
-    // A parallelogram has a third of the variance of its corners.
-    const double own = glm::dot(sum, sum);
-    mean += sum * deposit.energy, square += (own + (squares - own) / 3) * deposit.energy;
+    // Moments of triangles about the first corner.
+    const std::span<const Vec2<double>> corners = deposit.polygon();
+    const Vec2<double> origin = corners[0];
+    double area = 0, squares = 0;
+    Vec2<double> sum{0, 0};
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const Vec2<double> a = corners[k - 1] - origin, b = corners[k] - origin;
+      const double own = cross(a, b);
+      area += own, sum += (a + b) * (own / 3);
+      squares += (glm::dot(a, a) + glm::dot(a, b) + glm::dot(b, b)) * (own / 6);
+    }
+    if (area != 0) sum /= area, squares /= area;
+    mean += (origin + sum) * deposit.energy;
+    square += (glm::dot(origin, origin + 2.0 * sum) + squares) * deposit.energy;
     (deposit.mirrored ? mirrored : upright) |= deposit.energy > 0;
   }
   mean /= light.energy;
@@ -210,6 +216,14 @@ Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const GhostOptions
   parallel_for(paths.pairs.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
     const LightPath path = path_of(lens, paths.pairs[k]);
     const Box box = path.region(paths.entrance, options.wavelength);
+    if (options.model == GhostModel::paraxial) {
+      const Footprint first_order = path.paraxial(paths.entrance, surfaces, options.wavelength, film);
+      const Footprint exact = path.footprint(paths.entrance, box, 32, surfaces, options.wavelength, film, everywhere);
+      result.pairs[k] = measured(paths.pairs[k], first_order, paths.entering);
+      result.pairs[k].error =
+          first_order.energy > 0 ? std::abs(first_order.energy - exact.energy) / first_order.energy : 0;
+      return;
+    }
     if (!(box.high.x > box.low.x)) return;
     const auto at = [&](std::size_t cells) {
       return path.footprint(paths.entrance, box, cells, surfaces, options.wavelength, film, everywhere);
@@ -263,7 +277,9 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
   std::vector<Cells> cells(paths.pairs.size());
   std::vector<Wavelength> outer{shortest};
   if (by_nm(longest) > by_nm(shortest)) outer.push_back(longest);
+  const bool exact = options.model == GhostModel::exact;
   for (const Wavelength& w : outer) {
+    if (!exact) break;
     const Surfaces surfaces(lens, w, options.film_reflectance);
     parallel_for(cells.size(), 1, options.threads, [&](std::size_t k, std::size_t) {
       const LightPath path = path_of(lens, paths.pairs[k]);
@@ -289,10 +305,11 @@ void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film, std
     constexpr std::size_t group = 64;
     for (std::size_t begin = 0; begin < paths.pairs.size(); begin += group) {
       draw(raster, at, std::min(group, paths.pairs.size() - begin), options.threads, [&](std::size_t k) {
+        const LightPath path = path_of(lens, paths.pairs[begin + k]);
+        if (!exact) return path.paraxial(paths.entrance, surfaces, wavelengths[w], at);
         const Cells& c = cells[begin + k];
-        return c.count == 0 ? Footprint{}
-                            : path_of(lens, paths.pairs[begin + k])
-                                  .footprint(paths.entrance, c.box, c.count, surfaces, wavelengths[w], at, frame);
+        if (c.count == 0) return Footprint{};
+        return path.footprint(paths.entrance, c.box, c.count, surfaces, wavelengths[w], at, frame);
       });
     }
     if (options.starburst) {

@@ -47,6 +47,7 @@ class PETZVAL_API Surfaces {
 
   std::size_t count() const noexcept { return rows_.size() - 1; }
   double wavelength_nm() const noexcept { return nm_; }
+  const Lens& lens() const noexcept { return lens_; }
 
   /// Finds where the line of a ray meets a surface, or the film.
   /// @param forward true if light travels in the order of the surfaces

@@ -334,5 +334,34 @@ TEST(GhostLaws, RefusesBadInput) {
   petzval::testing::expect_error([&] { ghost_pairs(compile(open), far_light(0)); }, {"surface 0", "semi_diameter"});
 }
 
+TEST(GhostLaws, ParaxialGhostsEqualExactOnesNearTheAxis) {
+  for (const char* const id : {"double_gauss_52mm_f1.8", "anamorphic_60mm_2x"}) {
+    for (const int blades : {0, 5}) {
+      Lens lens = petzval::testing::data_lens(id);
+      for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+        lens = with_semi_diameter(lens, i, 0.01 * lens.surfaces()[i].semi_diameter);
+      }
+      lens = with_iris(lens, {.blades = blades});
+      const ScenePoint light = far_light(0.1);
+      const Ghosts exact = ghost_pairs(lens, light),
+                   paraxial = ghost_pairs(lens, light, {.model = GhostModel::paraxial});
+      double off = 0;
+      for (const GhostPair& pair : exact.pairs) {
+        const auto same = std::ranges::find_if(paraxial.pairs, [&](const GhostPair& other) {
+          return other.first == pair.first && other.second == pair.second;
+        });
+        if (pair.energy < 0.01 * total(exact)) continue;
+        ASSERT_NE(same, paraxial.pairs.end()) << id << ", " << pair.first << ", " << pair.second;
+        off += std::abs(same->energy - pair.energy);
+        const double radius = pair.rms_radius_mm;
+        EXPECT_NEAR(same->rms_radius_mm, radius, 0.02 * radius) << id << ", " << pair.first << ", " << pair.second;
+        EXPECT_NEAR(same->centre.x, pair.centre.x, 0.02 * radius);
+        EXPECT_NEAR(same->centre.y, pair.centre.y, 0.02 * radius);
+      }
+      EXPECT_LT(off, 0.01 * total(exact)) << id << ", " << blades << " blades";
+    }
+  }
+}
+
 }  // namespace ghost_laws_test
 }  // namespace petzval

@@ -16,6 +16,12 @@
 
 namespace petzval {
 
+/// How ghosts are computed.
+enum class GhostModel {
+  exact,     ///< exact rays with their derivatives
+  paraxial,  ///< to first order about the axis: one polygon of uniform irradiance for each pair
+};
+
 /// Options of ghosts.
 struct GhostOptions {
   Wavelength wavelength = {};   ///< for ghost_pairs() and ghost_audit(); any wavelength that the lens covers
@@ -27,7 +33,8 @@ struct GhostOptions {
   bool starburst = false;  ///< add_ghosts() also adds the light that the edges of the pupil diffract
   /// Target for the relative error of the energy of a pair; reached with at most 256^2 rays.
   double tolerance = 1e-3;
-  int threads = 1;  ///< at least 1; the number does not change results
+  GhostModel model = GhostModel::exact;  ///< of the pairs; the starburst and the audit are exact
+  int threads = 1;                       ///< at least 1; the number does not change results
 };
 
 /// Light that is reflected at one surface, travels back, and is reflected again towards the film.
@@ -36,7 +43,7 @@ struct GhostPair {
   std::size_t second = 0;  ///< surface of the first reflection; Lens::surface_count() is the film
   /// Energy on the film plane, as a fraction of the light that enters the first surface within its rim.
   double energy = 0;
-  double error = 0;          ///< estimated relative error of `energy`
+  double error = 0;          ///< estimated relative error of `energy`; paraxial: its distance from exact rays
   FilmPoint centre{};        ///< centroid of the energy, mm
   double rms_radius_mm = 0;  ///< root of the mean squared distance from the centroid
   double peak_per_mm2 = 0;   ///< largest energy per area of a square of 1/64 of the ghost's width, at least 1 um
@@ -94,7 +101,8 @@ PETZVAL_API Ghosts ghost_pairs(const Lens& lens, const ScenePoint& light, const 
 ///
 /// Accuracy: edges within 0.2 pixels, energy within 1 % of each ghost that holds more than 1e-4 of the light of all
 /// ghosts in the picture; a ghost of uniform irradiance is flat within
-/// 1e-5 (tests/ghosts). Elsewhere the irradiance has steps of about 1 %. Starbursts: 3 % of Fraunhofer's light in rings.
+/// 1e-5 (tests/ghosts). Elsewhere the irradiance has steps of about 1 %. Starbursts: 3 % of Fraunhofer's light in
+/// rings.
 ///
 /// Limitations: ghosts have no starbursts.
 PETZVAL_API void add_ghosts(const Lens& lens, const ScenePoint& light, const Film& film,
