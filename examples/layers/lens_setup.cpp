@@ -2,10 +2,7 @@
 #include "layers/lens_setup.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
-#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -22,7 +19,6 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "renderer/lens_camera.hpp"
-#include "support/bokeh.hpp"
 #include "support/camera_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
@@ -63,6 +59,14 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
 }
 
 }  // namespace
+
+void add_ghosts(examples::App& app, std::uint32_t& ghosts, const std::string& more) {
+  examples::add_count(app, "--ghosts", ghosts, ghost_counts,
+                      "add the ghosts of so many parts of the picture, those with most light in highlights: "
+                      "reflections between the surfaces of the lens, as of petzval ghosts; 8 suit most pictures. " +
+                          more)
+      ->default_str("0");
+}
 
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help) {
   examples::add_setup(app, flags.setup);
@@ -251,30 +255,6 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time, double tr
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time, double travelled_mm) {
   if (keyed_) view_.surface = surface_at(time, travelled_mm);
   return view_.rays(layers_, flags_.pattern, nearest_mm, threads);
-}
-
-petzval::RgbImage BlurLens::ghosts(std::span<const BrightPart> parts, int threads) const {
-  // The picture is 1 on the axis after the losses at the surfaces.
-  petzval::CameraSetup radiometric = view_.setup;
-  radiometric.camera.transmission = true;
-  radiometric.camera.model = model(), radiometric.camera.normalisation = petzval::Normalisation::irradiance;
-  radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
-  const double scale = 1 / examples::irradiance_on_axis(petzval::camera(radiometric, view_.lens));
-  const double origin_z = petzval::layer_origin_z(view_.camera());
-  petzval::RgbImage sum(view_.setup.film.columns, view_.setup.film.rows);
-  for (const BrightPart& part : parts) {
-    const petzval::Vec2<double> slope = (part.raster - layers_.axis) / layers_.focal_px;
-    petzval::ScenePoint point{.position = {slope.x, -slope.y, -1}, .at_infinity = !(part.inverse_depth > 0)};
-    if (!point.at_infinity)
-      point.position = point.position / part.inverse_depth + petzval::Vec3<double>(0, 0, origin_z);
-    // The solid angle of a pixel.
-    const double pixel = std::pow(1 + glm::dot(slope, slope), -1.5) / (layers_.focal_px * layers_.focal_px);
-    std::vector<std::array<double, 3>> weights(view_.coloured ? 4 : 1);
-    for (std::size_t c = 0; c < 3; ++c) weights[view_.coloured ? c + 1 : 0][c] = part.light[c] * pixel * scale;
-    const auto image = examples::ghost_picture(view_.lens, point, view_.setup.film, weights, {.threads = threads});
-    std::ranges::transform(sum.pixels, image.pixels, sum.pixels.begin(), std::plus());
-  }
-  return sum;
 }
 
 }  // namespace lens_blur

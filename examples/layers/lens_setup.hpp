@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "layers/layer_picture.hpp"
 #include "layers/lens_view.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/focus/autofocus.hpp"
@@ -38,6 +37,12 @@ struct LensFlags {
   }
 };
 
+/// Values of --ghosts.
+inline constexpr examples::Range ghost_counts{0, 576, "a whole number from 0 to 576"};
+
+/// Adds --ghosts: the number of bright parts of the picture whose ghosts are added.
+void add_ghosts(examples::App& app, std::uint32_t& ghosts, const std::string& more);
+
 /// Adds --setup and the flags of the lens.
 /// @param frames_help  names of the results of --frames
 void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help);
@@ -65,8 +70,10 @@ class BlurLens {
   /// camera has moved to the right; focus points over time stay in the world.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0, double travelled_mm = 0);
 
-  /// The ghosts of bright parts of a picture, in its unit, from the surfaces of the lens.
-  petzval::RgbImage ghosts(std::span<const BrightPart> parts, int threads) const;
+  /// LensView::ghosts() of a picture.
+  petzval::RgbImage ghosts(std::span<const BrightPart> parts, int threads) const {
+    return view_.ghosts(parts, layers_, {.threads = threads});
+  }
 
  private:
   examples::WorldToLens world_to_lens(const petzval::Camera& camera) const;

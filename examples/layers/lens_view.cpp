@@ -2,12 +2,16 @@
 #include "layers/lens_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <vector>
 
 #include "petzval/analysis/colour.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "support/bokeh.hpp"
 
 namespace lens_blur {
 
@@ -103,6 +107,33 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
     };
   }
   return petzval::LensRays::thin(layers, thin_lens, points, options);
+}
+
+petzval::RgbImage LensView::ghosts(std::span<const BrightPart> parts, const petzval::LayerCamera& layers,
+                                   const petzval::GhostOptions& options) const {
+  // The picture is 1 on the axis after the losses at the surfaces.
+  petzval::CameraSetup radiometric = setup;
+  radiometric.camera.transmission = true;
+  radiometric.camera.model = petzval::ModelKind::exact_float;
+  radiometric.camera.normalisation = petzval::Normalisation::irradiance;
+  radiometric.camera.expressive = {}, radiometric.focal_points.clear();
+  radiometric.film.shift_x_mm = radiometric.film.shift_y_mm = 0;
+  const double scale = 1 / examples::irradiance_on_axis(petzval::camera(radiometric, lens));
+  const double origin_z = petzval::layer_origin_z(camera());
+  petzval::RgbImage sum(setup.film.columns, setup.film.rows);
+  for (const BrightPart& part : parts) {
+    const petzval::Vec2<double> slope = (part.raster - layers.axis) / layers.focal_px;
+    petzval::ScenePoint point{.position = {slope.x, -slope.y, -1}, .at_infinity = !(part.inverse_depth > 0)};
+    if (!point.at_infinity)
+      point.position = point.position / part.inverse_depth + petzval::Vec3<double>(0, 0, origin_z);
+    // The solid angle of a pixel.
+    const double pixel = std::pow(1 + glm::dot(slope, slope), -1.5) / (layers.focal_px * layers.focal_px);
+    std::vector<std::array<double, 3>> weights(coloured ? 4 : 1);
+    for (std::size_t c = 0; c < 3; ++c) weights[coloured ? c + 1 : 0][c] = part.light[c] * pixel * scale;
+    const auto image = examples::ghost_picture(lens, point, setup.film, weights, options);
+    std::ranges::transform(sum.pixels, image.pixels, sum.pixels.begin(), std::plus());
+  }
+  return sum;
 }
 
 }  // namespace lens_blur

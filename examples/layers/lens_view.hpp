@@ -4,13 +4,17 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 
+#include "layers/layer_picture.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
+#include "petzval/ghosts/ghosts.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/io/json.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -46,6 +50,9 @@ struct LensView {
   /// @throws petzval::Cancelled if `stop` requests a stop
   petzval::LensRays rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm, int threads,
                          const std::stop_token& stop = {}) const;
+  /// The ghosts of bright parts of a picture of `layers`, in its unit, by the surfaces of the lens. Not of a thin lens.
+  petzval::RgbImage ghosts(std::span<const BrightPart> parts, const petzval::LayerCamera& layers,
+                           const petzval::GhostOptions& options) const;
 
  private:
   /// Inverse distance in focus of a thin lens without a focal surface at raster positions, 1/mm. It is linear over the

@@ -107,10 +107,8 @@ class Job {
     if (options.compare_rays > 0 && options.frames > 1) {
       throw petzval::Error("--compare-rays: --frames = " + std::to_string(options.frames) + "; must be 1");
     }
-    if (options.ghosts > 0 && lens_.model() != petzval::ModelKind::exact_float) {
-      throw petzval::Error("--ghosts = " + std::to_string(options.ghosts) +
-                           "; must not be used with a thin lens, a focal surface or an expressive lens, which have no "
-                           "surfaces");
+    if (options.ghosts > 0 && options.lens.thin()) {
+      throw petzval::Error("--ghosts with --thin-lens, which has no surfaces; must be a lens of surfaces");
     }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (side_ > 1 && !options.deep_out.empty()) {
@@ -437,11 +435,7 @@ int commands::blur(int argc, char** argv) {
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
-  examples::add_count(app, "--ghosts", options.ghosts, {0, 576, "a whole number from 0 to 576"},
-                      "add the ghosts of so many parts of the picture, the brightest above --highlights-above: "
-                      "reflections between the surfaces of the lens, as of petzval ghosts; 8 suit most pictures. Also "
-                      "the channels ghosts.R, .G and .B of blur.exr")
-      ->default_str("0");
+  lens_blur::add_ghosts(app, options.ghosts, "Also the channels ghosts.R, .G and .B of blur.exr");
   examples::add_out_file(
       app, options.deep_out,
       "deep picture of the samples of --deep that --holdout leaves, not blurred, with depths along the axis in mm",

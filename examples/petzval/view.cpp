@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "layers/layer_input.hpp"
+#include "layers/lens_setup.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
@@ -56,6 +57,7 @@ int commands::view(int argc, char** argv) {
   examples::add_number(app, "--f-number", setup.f_number, examples::positive_number,
                        "f-number of the thin lens, or of LENS")
       ->default_str("LENS: wide open");
+  lens_blur::add_ghosts(app, window.session.ghosts, "To first order until the picture is still");
   auto* log =
       app.add_option("--replay", replay.log_file, "replay a log of events, without a window")->type_name("LOG.json");
   app.add_flag("--json", replay.json, "print states as JSON, one in each line")->needs(log);
@@ -106,6 +108,9 @@ int commands::view(int argc, char** argv) {
     }
     if (lens.thin_mm > 0 && !setup.f_number) throw petzval::Error("--thin-lens needs --f-number");
     if (!(lens.thin_mm > 0) && setup.file.empty() && lens.file.empty()) lens.file = "double_gauss_52mm_f1.8";
+    if (lens.thin_mm > 0 && window.session.ghosts > 0) {
+      throw petzval::Error("--ghosts with --thin-lens, which has no surfaces; must be a lens of surfaces");
+    }
     window.session.setup = for_editor(setup);
     if (window.log_file.empty()) window.log_file = "petzval-view.json";
     viewer::show_window(window);

@@ -5,11 +5,13 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <glm/geometric.hpp>
 
 #include "layers/layer_picture.hpp"
+#include "layers/lens_setup.hpp"
 #include "layers/lit_scene.hpp"
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
@@ -222,6 +224,14 @@ double Session::make_layers() {
   return examples::ms_since(start);
 }
 
+void Session::add_ghosts(petzval::RgbImage& picture, const lens_blur::LensView& lens, const petzval::LayerSet& layers,
+                         const petzval::LayerCamera& camera, double threshold, petzval::GhostModel model) const {
+  if (options_.ghosts == 0 || lens.thin()) return;
+  const auto parts = lens_blur::bright_parts(layers, camera, threshold, options_.ghosts);
+  const petzval::RgbImage ghosts = lens.ghosts(parts, camera, {.model = model, .threads = options_.threads});
+  std::ranges::transform(picture.pixels, ghosts.pixels, picture.pixels.begin(), std::plus());
+}
+
 Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
   lens_blur::LensView lens = view();
@@ -232,6 +242,7 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
   petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_, .stop = stop},
                   blurred_);
   Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
+  add_ghosts(result.picture, lens, layers_, camera_, threshold_, petzval::GhostModel::paraxial);
   result.memory_mb = memory_of(layers_, blurred_);
   result.milliseconds = examples::ms_since(start);
   return result;
@@ -257,6 +268,7 @@ Frame Session::still(const std::stop_token& stop) {
                .rays = pattern.rays,
                .memory_mb = memory_of(layers, blurred),
                .still = true};
+  add_ghosts(result.picture, lens, layers, camera, threshold, petzval::GhostModel::exact);
   result.milliseconds = examples::ms_since(start);
   return result;
 }
@@ -346,6 +358,7 @@ Json Session::log() const {
   json["setup"] = Json::parse(petzval::to_json(options_.setup));
   json["size"] = {input_.columns(), input_.rows()};
   if (options_.fov_deg > 0) json["fov_deg"] = options_.fov_deg;
+  if (options_.ghosts > 0) json["ghosts"] = options_.ghosts;
   json["events"] = Json::parse(editor_->log());
   return json;
 }
@@ -363,6 +376,7 @@ std::string Session::blur_command(const std::string& setup_file) const {
   if (input.near_mm > 0) add("near", exact(input.near_mm)), add("far", exact(input.far_mm));
   if (options_.layers != 4) add("layers", std::to_string(options_.layers));
   if (options_.fov_deg > 0) add("fov", exact(options_.fov_deg));
+  if (options_.ghosts > 0 && !view().thin()) add("ghosts", std::to_string(options_.ghosts));
   petzval::CameraSetup setup = editor_->state().setup;
   setup.focus_mm = editor_->state().focus_mm;
   examples::write_text(setup_file, petzval::to_json(setup) + '\n');
@@ -378,7 +392,7 @@ examples::Json events_of(const Json& log, const std::string& where) {
 SessionOptions options_of(const Json& log, const std::string& where) {
   const examples::JsonEntry entry{where, log};
   entry.keys({"scene", "image", "depth", "deep", "part", "holdout", "holdout_part", "depth_kind", "depth_unit",
-              "near_mm", "far_mm", "white", "lens", "setup", "size", "fov_deg", "events"});
+              "near_mm", "far_mm", "white", "lens", "setup", "size", "fov_deg", "ghosts", "events"});
   SessionOptions options;
   for (const auto& [key, member] : texts) {
     if (!log.contains(key)) continue;
@@ -421,6 +435,9 @@ SessionOptions options_of(const Json& log, const std::string& where) {
     }
   }
   options.fov_deg = entry.number("fov_deg", {1e-3, 120, "more than 0 and at most 120"}).value_or(0);
+  const double ghosts = entry.number("ghosts", lens_blur::ghost_counts).value_or(0);
+  if (ghosts != std::floor(ghosts)) entry.refuse("ghosts", lens_blur::ghost_counts.words);
+  options.ghosts = static_cast<std::uint32_t>(ghosts);
   return options;
 }
 

@@ -28,6 +28,7 @@ struct SessionOptions {
   petzval::CameraSetup setup;  ///< of FocusEditor
   double fov_deg = 0;          ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
   std::uint32_t layers = 4;
+  std::uint32_t ghosts = 0;  ///< number of bright parts with ghosts, to first order before the still picture
   int threads = 1;
   int file_columns = 0, file_rows = 0;  ///< required size of files; 0: any size
 };
@@ -105,6 +106,8 @@ class Session {
   petzval::Lens load(const petzval::CameraSetup& setup);
   std::optional<petzval::FocusPlace> place(const petzval::Ray<double>& ray) const;
   lens_blur::LensView view() const;
+  void add_ghosts(petzval::RgbImage& picture, const lens_blur::LensView& lens, const petzval::LayerSet& layers,
+                  const petzval::LayerCamera& camera, double threshold, petzval::GhostModel model) const;
   double widest_radius(const lens_blur::LensView& view) const;
   void update_camera();
 
