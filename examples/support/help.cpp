@@ -26,7 +26,7 @@ constexpr std::array all_groups{
           "--robust --blur --points "},
     Group{"Picture", false,
           " --film --fov --size --width --columns --title --white-point --normalisation --exposure --frames --fps "
-          "--travel --ghosts "},
+          "--travel "},
     Group{"Work", false,
           " --integrator --diffraction --film-reflectance --wavelengths --spp --rays --noise --time --compare "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
@@ -35,7 +35,7 @@ constexpr std::array all_groups{
           "--precision --surfaces-from "},
     Group{"Quality", true,
           " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above --compare-rays "
-          "--pairs "},
+          "--pairs --ghosts --starburst "},
     Group{"Depths", true,
           " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --contrast --white "},
     Group{"Files", true,
