@@ -16,9 +16,8 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "core/least_squares.hpp"
 #include "core/text.hpp"
-#include "optical_path.hpp"
+#include "direction_map.hpp"
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
@@ -31,103 +30,11 @@
 namespace petzval {
 namespace {
 
-using analysis_detail::OpticalPaths;
-using analysis_detail::PathRay;
+using analysis_detail::DirectionMap;
 using analysis_detail::PupilNode;
 using Complex = std::complex<double>;
 
 constexpr int most_samples = 4096;
-
-/// Polynomial of two variables from -1 to 1, of total degree 8, by least squares.
-class PowerSeries {
- public:
-  static constexpr int degree = 8, terms = (degree + 1) * (degree + 2) / 2;
-  using Row = Eigen::Matrix<double, 1, terms>;
-
-  static Row row(double x, double y) noexcept {
-    std::array<double, degree + 1> xs{1}, ys{1};
-    for (std::size_t i = 1; i <= degree; ++i) xs[i] = xs[i - 1] * x, ys[i] = ys[i - 1] * y;
-    Row result;
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i <= degree; ++i) {
-      for (std::size_t j = 0; i + j <= degree; ++j) result[at++] = xs[i] * ys[j];
-    }
-    return result;
-  }
-};
-
-/// A point of the film as seen from one wavelength: its rays, and the map from directions behind the lens to positions
-/// in the pupil plane.
-class DirectionMap {
- public:
-  DirectionMap(const Lens& lens, const FieldPoint& point, std::size_t wavelength, const Vec3<double>& centre)
-      : boundary_(pupil_boundary(lens, point, wavelength)), paths_(lens, boundary_.plane, wavelength, centre) {
-    std::vector<Vec2<double>> reached;
-    std::vector<PathRay> rays;
-    Vec2<double> low{2, 2}, high{-2, -2};
-    double blur_squared = 0;
-    for (const PupilNode& node : analysis_detail::pupil_nodes_and_rim(boundary_)) {
-      const auto ray = paths_(node.position);
-      if (!ray) continue;
-      reached.push_back(node.position), rays.push_back(*ray);
-      low = glm::min(low, Vec2<double>(ray->direction)), high = glm::max(high, Vec2<double>(ray->direction));
-      blur_squared = std::max(blur_squared, ray->miss_squared);
-    }
-    if (rays.empty()) return;
-    blur_ = std::sqrt(blur_squared);
-    middle_ = (low + high) / 2.0;
-    half_ = std::max((high.x - low.x) / 2, (high.y - low.y) / 2);
-    if (!(std::min(high.x - low.x, high.y - low.y) > 1e-6 * half_)) {
-      throw Error("diffraction_psf: the rays of " + lens.name() +
-                  " are parallel in one section; must converge in both");
-    }
-    const auto count = static_cast<Eigen::Index>(rays.size());
-    Eigen::MatrixXd rows(count, PowerSeries::terms);
-    Eigen::VectorXd x(count), y(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const Vec2<double> scaled = scaled_direction(Vec2<double>(rays[at].direction));
-      rows.row(i) = PowerSeries::row(scaled.x, scaled.y);
-      x[i] = reached[at].x, y[i] = reached[at].y;
-    }
-    x_ = core_detail::least_squares(rows, x), y_ = core_detail::least_squares(rows, y);
-  }
-
-  bool empty() const noexcept { return half_ == 0; }
-  const PupilBoundary& boundary() const noexcept { return boundary_; }
-  const OpticalPaths& paths() const noexcept { return paths_; }
-  /// Middle and half of the larger width of the directions (x and y of unit vectors).
-  const Vec2<double>& middle() const noexcept { return middle_; }
-  double half() const noexcept { return half_; }
-  /// Largest distance of a ray from the centre of the image, mm.
-  double blur() const noexcept { return blur_; }
-
-  /// Position in the pupil plane of the ray that leaves the lens in a direction, by the polynomials.
-  Vec2<double> position(const Vec2<double>& direction) const noexcept {
-    const Vec2<double> scaled = scaled_direction(direction);
-    const PowerSeries::Row row = PowerSeries::row(scaled.x, scaled.y);
-    return {row.dot(x_), row.dot(y_)};
-  }
-
-  /// Area in the pupil plane for an area of directions, mm^2.
-  double stretch(const Vec2<double>& direction) const noexcept {
-    const double step = 1e-4 * half_;
-    const Vec2<double> along_x =
-        position(direction + Vec2<double>{step, 0}) - position(direction - Vec2<double>{step, 0});
-    const Vec2<double> along_y =
-        position(direction + Vec2<double>{0, step}) - position(direction - Vec2<double>{0, step});
-    return std::abs(along_x.x * along_y.y - along_x.y * along_y.x) / (4 * step * step);
-  }
-
- private:
-  Vec2<double> scaled_direction(const Vec2<double>& direction) const noexcept { return (direction - middle_) / half_; }
-
-  PupilBoundary boundary_;
-  OpticalPaths paths_;
-  Vec2<double> middle_{0, 0};
-  double half_ = 0, blur_ = 0;
-  Eigen::VectorXd x_, y_;
-};
 
 /// The film positions of an image: `pixels` columns and rows of `finer` samples each.
 struct SampleGrid {
@@ -304,28 +211,12 @@ class DirectionGrid {
     const double wavelength_mm = lens_.wavelengths_nm()[wavelength_] * 1e-6;
     for (int column = 0; column < width(); ++column) {
       const double part = coverage(row, column);
-      const auto path = part > 0 ? path_in(direction(row, column)) : std::nullopt;
+      const auto path = part > 0 ? map_.path(direction(row, column)) : std::nullopt;
       if (!path) continue;
       // A partly lit cell has its mean amplitude. The light that the mean lacks falls outside the window.
       const double amplitude = part * std::sqrt(map_.stretch(direction(row, column))) * step_ * step_;
       values_[index(row, column)] = amplitude * wave(*path, wavelength_mm);
     }
-  }
-
-  /// Optical path of the ray that leaves the lens in a direction: of the ray at the position of the polynomials, with
-  /// a step to the direction.
-  std::optional<double> path_in(const Vec2<double>& wanted) const {
-    Vec2<double> corrected = wanted;
-    for (int iteration = 0; iteration < 8; ++iteration) {
-      const auto ray = map_.paths()(map_.position(corrected));
-      if (!ray) break;
-      const Vec2<double> miss = wanted - Vec2<double>(ray->direction);
-      if (glm::dot(miss, miss) < 1e-6 * map_.half() * map_.half()) {
-        return ray->path - map_.paths().film_index() * glm::dot(miss, ray->film);
-      }
-      corrected += miss;
-    }
-    return {};
   }
 
   const Lens& lens_;
@@ -449,7 +340,7 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
   double widest = 0, narrowest = std::numeric_limits<double>::infinity(), blur = 0;
   std::vector<DirectionMap> maps;
   for (const std::size_t w : wavelengths) {
-    const DirectionMap& map = maps.emplace_back(lens, point, w, centre);
+    const DirectionMap& map = maps.emplace_back("diffraction_psf", lens, point, w, centre);
     psf.wavelengths_nm.push_back(lens.wavelengths_nm()[w]);
     if (map.empty()) continue;
     const double unit = psf.wavelengths_nm.back() * 1e-6 / (map.paths().film_index() * map.half());
@@ -512,18 +403,14 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
 std::vector<MtfPoint> diffraction_mtf(const DiffractionPsf& psf, std::span<const double> frequencies_per_mm,
                                       std::span<const double> wavelength_weights) {
   const std::size_t wavelengths = psf.wavelengths_nm.size();
-  if (!wavelength_weights.empty() && wavelength_weights.size() != wavelengths) {
-    throw Error("diffraction_mtf: " + std::to_string(wavelength_weights.size()) + " weights; must be " +
-                std::to_string(wavelengths) + ", one for each wavelength, or none");
-  }
+  const auto weights = analysis_detail::mtf_weights(wavelengths, wavelength_weights);
   const std::size_t samples = psf.line_x.size() / std::max<std::size_t>(wavelengths, 1);
   std::vector<double> across(samples), down(samples);
   double total = 0;
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    const double weight = wavelength_weights.empty() ? 1 : wavelength_weights[w];
-    total += weight * psf.throughput[w];
+    total += weights[w] * psf.throughput[w];
     for (std::size_t i = 0; i < samples; ++i) {
-      across[i] += weight * psf.line_x[w * samples + i], down[i] += weight * psf.line_y[w * samples + i];
+      across[i] += weights[w] * psf.line_x[w * samples + i], down[i] += weights[w] * psf.line_y[w * samples + i];
     }
   }
   std::vector<MtfPoint> result;

@@ -78,13 +78,19 @@ PETZVAL_API std::vector<FieldDistortion> distortion_percent(const Lens& lens, do
                                                             std::span<const double> fields_rad,
                                                             Wavelength wavelength = {});
 
-/// The modulation transfer of one field at one frequency, without diffraction: the contrast of lines perpendicular to y
-/// (tangential) and to x (sagittal) on the film.
+/// The modulation transfer of one field at one frequency: the contrast of lines perpendicular to y (tangential) and to
+/// x (sagittal) on the film.
 struct MtfPoint {
   double field_rad = 0, frequency_per_mm = 0;
   double tangential = 0, sagittal = 0;  ///< 0 to 1; 0 if no ray passes
-  /// Largest deviation of a quarter of the rays from all rays, of both contrasts. Usually larger than the error.
+  /// geometric_mtf(): largest deviation of a quarter of the rays from all rays, of both contrasts. Usually larger than
+  /// the error. diffraction_mtf() of a lens: bound of the error.
   double sampling_error = 0;
+  // The others are of diffraction_mtf() of a lens.
+  double tangential_limit = 1, sagittal_limit = 1;  ///< contrast of the same vignetted pupil without wavefront error
+  /// Distance of the chief ray from the axis on the film; NaN if there is no such ray.
+  double image_height_mm = std::numeric_limits<double>::quiet_NaN();
+  double film_shift_mm = 0;  ///< position of the film relative to the film of the lens
 };
 
 /// Geometric MTF from spots: [field][frequency].
