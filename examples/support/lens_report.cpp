@@ -70,7 +70,8 @@ petzval::LensReport::Conditions conditions(const Report& r, const petzval::Lens&
           .fields_deg = r.subject.fields.degrees,
           .wavelength_weights = r.subject.light.weights,
           .first_surface_number = r.loaded.first_surface_number,
-          .threads = threads()};
+          .threads = threads(),
+          .entrance_pupil_diameter = r.declared_pupil ? std::optional(r.declared_pupil->diameter) : std::nullopt};
 }
 
 std::vector<Entry> entries(const Report& r, const petzval::LensReport::Section& section) {

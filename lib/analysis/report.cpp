@@ -34,17 +34,27 @@ std::uint32_t rays_per_spot(const Lens& lens) {
   return rays;
 }
 
-Grid<MtfPoint> mtf_over_field(const LensReport& r, std::uint32_t rays) {
-  constexpr std::size_t steps = 10;
+Grid<MtfPoint> mtf_over_field(const LensReport& r, std::span<const double> fields_rad, std::uint32_t rays) {
   constexpr std::array frequencies{10.0, 20.0, 40.0};
   const std::size_t wavelengths = r.lens.wavelengths_nm().size();
-  if (r.largest_field.field_rad == 0) return {{}, frequencies.size()};
-  Grid<Spot> spots{std::vector<Spot>((steps + 1) * wavelengths), wavelengths};
+  Grid<Spot> spots{std::vector<Spot>(fields_rad.size() * wavelengths), wavelengths};
   parallel_for(spots.values.size(), 1, r.conditions.threads, [&](std::size_t at, std::size_t) {
-    const double field = r.largest_field.field_rad * static_cast<double>(at / wavelengths) / steps;
-    spots.values[at] = analysis_detail::trace_spot(r.lens, {field, r.conditions.subject_z}, at % wavelengths, rays);
+    const FieldPoint point{fields_rad[at / wavelengths], r.conditions.subject_z};
+    spots.values[at] = analysis_detail::trace_spot(r.lens, point, at % wavelengths, rays);
   });
   return geometric_mtf(spots, frequencies, r.conditions.wavelength_weights, r.conditions.threads);
+}
+
+std::vector<MtfChart> mtf_chart(const LensReport& r, std::span<const double> fields_rad) {
+  constexpr std::array frequencies{10.0, 20.0, 30.0, 40.0};
+  std::vector<MtfChart> result;
+  for (const double f_number : {*r.f_number, 8.0}) {
+    if (fields_rad.empty() || (!result.empty() && f_number < 1.01 * *r.f_number)) continue;
+    result.emplace_back(
+        f_number, diffraction_mtf(result.empty() ? r.lens : with_f_number(r.lens, f_number), r.conditions.subject_z,
+                                  fields_rad, frequencies, r.conditions.wavelength_weights, r.conditions.threads));
+  }
+  return result;
 }
 
 Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
@@ -110,11 +120,18 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   }
   r.f_number = quantity([&] { return real_f_number(lens); });
   r.paraxial_rays = quantity([&] { return paraxial_rays(lens, r.largest_field); });
-  r.seidel = quantity([&] {
+  const auto seidel = [&](const ParaxialField& field) {
     const auto [shortest, longest] = std::ranges::minmax(lens.wavelengths_nm());
-    return seidel_sums(lens, r.largest_field, {}, lens.wavelength_index(Wavelength::nm(shortest)),
+    return seidel_sums(lens, field, {}, lens.wavelength_index(Wavelength::nm(shortest)),
                        lens.wavelength_index(Wavelength::nm(longest)));
-  });
+  };
+  r.seidel = quantity([&] { return seidel(r.largest_field); });
+  if (r.conditions.entrance_pupil_diameter) {
+    ParaxialField declared = r.largest_field;
+    declared.entrance_pupil_diameter = r.conditions.entrance_pupil_diameter;
+    r.paraxial_rays_declared = quantity([&] { return paraxial_rays(lens, declared); });
+    r.seidel_declared = quantity([&] { return seidel(declared); });
+  }
 
   const std::uint32_t rays = rays_per_spot(lens);
   r.ray_fans = quantity([&] { return ray_fans(lens, z, fields); });
@@ -131,7 +148,16 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
     for (const double frequency : frequencies) limit.push_back(diffraction_limited_mtf(frequency, nm, f_number));
     return limit;
   });
-  r.mtf_over_field = quantity([&] { return mtf_over_field(r, rays / 8); });
+  std::vector<double> chart_fields;
+  for (int k = 0; k <= 10 && r.largest_field.field_rad != 0; ++k) {
+    chart_fields.push_back(r.largest_field.field_rad * k / 10);
+  }
+  r.mtf_over_field = quantity([&] { return mtf_over_field(r, chart_fields, rays / 8); });
+  r.mtf_diffraction = quantity([&] {
+    constexpr std::array coarse{0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0};
+    return diffraction_mtf(lens, z, fields, coarse, weights, threads);
+  });
+  r.mtf_chart = quantity([&] { return mtf_chart(r, chart_fields); });
   r.through_focus = quantity([&] { return spots_through_focus(r); });
   r.encircled_energy = quantity([&] {
     constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};

@@ -72,18 +72,27 @@ void add_terms(OrderedJson& to, const SeidelTerms& t, bool coloured) {
   add(to, "C1", coloured ? json(t.c1) : OrderedJson(), "C2", coloured ? json(t.c2) : OrderedJson());
 }
 
+/// Values of points; contrasts are null if no ray passes.
+OrderedJson list_of(std::span<const MtfPoint> points, double MtfPoint::*value) {
+  const bool contrast = value == &MtfPoint::tangential || value == &MtfPoint::sagittal;
+  OrderedJson list = OrderedJson::list();
+  for (const MtfPoint& p : points) list.add(contrast && p.sampling_error == 0 ? OrderedJson() : json(p.*value));
+  return list;
+}
+
 void add_seidel(OrderedJson& to, OrderedJson& failures, const LensReport& r) {
   if (!r.seidel) {
     add(failures, "seidel", r.seidel.failure);
-    return add(to, "seidel", OrderedJson(), "seidel_sums", OrderedJson());
+    return add(to, "seidel", OrderedJson(), "seidel_sums", OrderedJson(), "seidel_sums_declared", OrderedJson());
   }
   const bool coloured = r.lens.wavelengths_nm().size() > 1;
-  OrderedJson list = OrderedJson::list(), sums = OrderedJson::object();
+  OrderedJson list = OrderedJson::list(), sums = OrderedJson::object(), declared = OrderedJson::object();
   for (int number = r.conditions.first_surface_number; const SeidelTerms& terms : r.seidel->surfaces) {
     add_terms(list.add(object("surface", number++)), terms, coloured);
   }
   add_terms(sums, r.seidel->sums, coloured);
-  add(to, "seidel", list, "seidel_sums", sums);
+  if (r.seidel_declared) add_terms(declared, r.seidel_declared->sums, coloured);
+  add(to, "seidel", list, "seidel_sums", sums, "seidel_sums_declared", r.seidel_declared ? declared : OrderedJson());
 }
 
 /// Writes lists of quantities, and the reasons for quantities without a value. `add_entry` gets the list, the row and
@@ -135,7 +144,8 @@ std::string to_json(const LensReport& r) {
   add_seidel(report, write.failures, r);
   if (!r.paraxial_rays) add(write.failures, "paraxial_rays", r.paraxial_rays.failure);
   add(report, "paraxial_rays", r.paraxial_rays ? paraxial_rays_json(r, *r.paraxial_rays) : OrderedJson());
-  add(report, "optical_invariant_mm", member(r.paraxial_rays.value, &ParaxialRays::invariant));
+  add(report, "optical_invariant_mm", member(r.paraxial_rays.value, &ParaxialRays::invariant),
+      "optical_invariant_declared_mm", member(r.paraxial_rays_declared.value, &ParaxialRays::invariant));
 
   using List = OrderedJson;
   using Index = std::size_t;
@@ -163,6 +173,23 @@ std::string to_json(const LensReport& r) {
   write("mtf_over_field", r.mtf_over_field, [](List& list, Index, Index, const MtfPoint& p) {
     list.add(object("field_deg", degrees(p.field_rad), "frequency_per_mm", p.frequency_per_mm, "tangential",
                     p.tangential, "sagittal", p.sagittal, "sampling_error", p.sampling_error));
+  });
+  write("mtf_diffraction", r.mtf_diffraction, [&](List& list, Index field, Index k, const MtfPoint& p) {
+    if (k > 0) return;
+    const std::span<const MtfPoint> points = (*r.mtf_diffraction)[field];
+    list.add(at(field, "image_height_mm", p.image_height_mm, "wavelengths", nm, "lp_per_mm",
+                list_of(points, &MtfPoint::frequency_per_mm), "tangential", list_of(points, &MtfPoint::tangential),
+                "sagittal", list_of(points, &MtfPoint::sagittal), "error", p.sampling_error));
+  });
+  write("mtf_chart", r.mtf_chart, [](List& list, Index, Index, const MtfChart& chart) {
+    const auto& [f_number, points] = chart;
+    for (Index k = 0; k < points.columns; ++k) {
+      std::vector<MtfPoint> line;
+      for (Index height = 0; height < points.size(); ++height) line.push_back(points[height][k]);
+      list.add(object("f_number", f_number, "lp_per_mm", line[0].frequency_per_mm, "image_height_mm",
+                      list_of(line, &MtfPoint::image_height_mm), "tangential", list_of(line, &MtfPoint::tangential),
+                      "sagittal", list_of(line, &MtfPoint::sagittal)));
+    }
   });
   write("through_focus", r.through_focus, [&](List& list, Index field, Index, const ThroughFocusSpot& spot) {
     list.add(at(field, "film_shift_mm", spot.film_shift_mm, "rms_radius_mm", spot.rms_radius_mm, "sampling_error_mm",

@@ -50,6 +50,9 @@ void check(const Lens& lens, const ParaxialField& field) {
     throw Error(lens.name() + ": " + parameter + " = " + to_text(value) + "; must be " + rule);
   };
   if (std::isnan(field.object_distance)) fail("object_distance", field.object_distance, "a number");
+  if (const auto& diameter = field.entrance_pupil_diameter; diameter && !(*diameter > 0 && std::isfinite(*diameter))) {
+    fail("entrance_pupil_diameter", *diameter, "positive and finite");
+  }
   if (field.object_height) {
     if (!std::isfinite(*field.object_height)) fail("object_height", *field.object_height, "finite");
     if (!(std::abs(field.object_distance) <= 1e100)) {
@@ -64,8 +67,10 @@ void check(const Lens& lens, const ParaxialField& field) {
 
 ParaxialRays paraxial_rays(const Lens& lens, const ParaxialField& field, Wavelength wavelength) {
   check(lens, field);
-  const std::size_t stop = pupils(lens, wavelength).stop;
-  const double radius = lens.surfaces()[stop].semi_diameter;
+  const Pupils stopped = pupils(lens, wavelength);
+  const std::size_t stop = stopped.stop;
+  double radius = lens.surfaces()[stop].semi_diameter;
+  if (field.entrance_pupil_diameter) radius *= *field.entrance_pupil_diameter / stopped.entrance.diameter;
   const RayMatrix front = ray_matrix_to(lens, stop, wavelength);
   double n = signed_index(lens, 0, wavelength);
 
@@ -85,7 +90,7 @@ ParaxialRays paraxial_rays(const Lens& lens, const ParaxialField& field, Wavelen
   // The chief ray of the axial point is the axis, also if a telecentric lens has no multiple.
   const bool on_axis = field.object_height.value_or(field.field_rad) == 0;
   RayState chief = on_axis ? RayState{0, 0} : RayState{-front.b * scale, front.a * scale};
-  if (!std::isfinite(marginal.y + marginal.nu) || !std::isfinite(chief.y + chief.nu)) {
+  if (!(radius > 0) || !std::isfinite(marginal.y + marginal.nu) || !std::isfinite(chief.y + chief.nu)) {
     throw Error(
         lens.name() + ": no " + (std::isfinite(marginal.y + marginal.nu) ? "chief" : "marginal") +
         " ray; the object must not lie at the image of the stop, and an object given by an angle or at infinity "

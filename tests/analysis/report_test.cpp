@@ -26,6 +26,7 @@ TEST(LensReport, IndicesAreFieldAndWavelength) {
   const Lens lens = double_gauss();
   const LensReport r = lens_report(lens, {.fields_deg = {0, 12}, .threads = 2});
   const std::array off_axis{radians(12.0)}, frequencies{40.0}, fractions{0.9};
+  const std::array tens{10.0, 20.0, 30.0, 40.0};
   const auto spots = spot_diagram(lens, far, off_axis, 32768);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ((*r.spots)[1][k].y, spots[0][k].y);
@@ -37,6 +38,12 @@ TEST(LensReport, IndicesAreFieldAndWavelength) {
   EXPECT_EQ((*r.mtf)[1][8].tangential, geometric_mtf(spots, frequencies)[0][0].tangential);
   EXPECT_NEAR((*r.mtf_over_field)[10][2].tangential,
               geometric_mtf(spot_diagram(lens, far, off_axis, 4096), frequencies)[0][0].tangential, 1e-12);
+  EXPECT_NEAR((*r.mtf_diffraction)[1][5].sagittal, diffraction_mtf(lens, far, off_axis, frequencies)[0][0].sagittal,
+              1e-3);
+  ASSERT_EQ(r.mtf_chart->size(), 2u);
+  EXPECT_EQ(r.mtf_chart->at(0).second[10][3].sagittal, diffraction_mtf(lens, far, off_axis, tens)[0][3].sagittal);
+  EXPECT_EQ(r.mtf_chart->at(1).second[10][3].tangential,
+            diffraction_mtf(with_f_number(lens, 8), far, off_axis, tens)[0][3].tangential);
   EXPECT_EQ((*r.encircled_energy)[1][2].radius_mm, encircled_energy(spots, fractions)[0][0].radius_mm);
   const double step = through_focus_step(lens, *r.spots).value();
   EXPECT_EQ((*r.through_focus)[1][4].film_shift_mm, 2 * step);

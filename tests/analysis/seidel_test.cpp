@@ -402,5 +402,19 @@ TEST(SeidelSums, DoubleGaussEqualsNumbersOfOptiland) {
   EXPECT_NEAR(std::abs(sums.s5), 0.0464, 1e-4);
 }
 
+// OpticStudio and optiland take the marginal ray of the declared pupil, 10 mm, and not of the rim of the stop. Their S1
+// of the triplet from which the data were rounded is 0.0069603 at 550 nm.
+TEST(SeidelSums, OfADeclaredPupilEqualsNumberOfOpticStudio) {
+  const Lens lens = compile(testing::data_prescription("cooke_triplet_50mm_f5"), std::array{550.0},
+                            {.index_policy = IndexPolicy::catalogue});
+  const double field = radians(20), diameter = pupils(lens).entrance.diameter;
+  const SeidelTerms real = seidel_sums(lens, {.field_rad = field}).sums,
+                    declared = seidel_sums(lens, {.field_rad = field, .entrance_pupil_diameter = 10}).sums;
+  EXPECT_NEAR(declared.s1, 0.0069603, 2e-6);
+  EXPECT_NEAR(declared.s1, real.s1 * std::pow(10 / diameter, 4), 1e-12);
+  EXPECT_NEAR(declared.s5, real.s5 * 10 / diameter, 1e-12);
+  testing::expect_error([&] { seidel_sums(lens, {.entrance_pupil_diameter = 0}); }, {"entrance_pupil_diameter", 0});
+}
+
 }  // namespace seidel_test
 }  // namespace petzval

@@ -47,6 +47,19 @@ TEST_F(LensReport, NumbersEqualTheLibrary) {
   EXPECT_NEAR(json["ray_fans"][16]["tangential_waves"].get<double>(), 0, 1e-9);  // the chief ray
   EXPECT_EQ(json["mtf"][24]["sagittal"], (*report.mtf)[1][3].sagittal);
   EXPECT_EQ(json["mtf_over_field"][32]["sampling_error"], (*report.mtf_over_field)[10][2].sampling_error);
+  const auto& mtf = json["mtf_diffraction"][1];
+  EXPECT_EQ(mtf["field_deg"], json["fields_deg"][1]);
+  EXPECT_EQ(mtf["wavelengths"], json["wavelengths_nm"]);
+  EXPECT_EQ(mtf["lp_per_mm"][5], 40);
+  EXPECT_EQ(mtf["sagittal"][5], (*report.mtf_diffraction)[1][5].sagittal);
+  EXPECT_EQ(mtf["error"], (*report.mtf_diffraction)[1][0].sampling_error);
+  EXPECT_NEAR(mtf["image_height_mm"].get<double>(), std::abs(*(*report.spots)[1][1].chief_ray_height), 1e-9);
+  ASSERT_EQ(json["mtf_chart"].size(), 8u);  // wide open and at f/8
+  const auto& line = json["mtf_chart"][5];
+  EXPECT_EQ(line["f_number"], 8);
+  EXPECT_EQ(line["lp_per_mm"], 20);
+  EXPECT_EQ(line["tangential"][3], report.mtf_chart->at(1).second[3][1].tangential);
+  EXPECT_EQ(line["image_height_mm"][10], json["mtf_diffraction"][2]["image_height_mm"]);
   EXPECT_EQ(json["encircled_energy"][7]["radius_um"], 1000 * *(*report.encircled_energy)[1][3].radius_mm);
   EXPECT_EQ(json["lateral_colour"][8]["chief_ray_shift_um"], 1000 * *(*report.lateral_colour)[2][2]);
   EXPECT_EQ(json["wavefront"][5]["wavelength_nm"], wavelengths[2]);
@@ -125,6 +138,11 @@ TEST_F(LensReport, UsesTheConditionsOfTheFile) {
   // OpticStudio prints the declared entrance pupil, and the focal length over its diameter as the f-number.
   EXPECT_EQ(json["declared_entrance_pupil_diameter_mm"], 12.5);
   EXPECT_NEAR(json["declared_f_number"].get<double>(), json["effective_focal_length_mm"].get<double>() / 12.5, 1e-12);
+  const double ratio = 12.5 / json["entrance_pupil_diameter_mm"].get<double>();
+  EXPECT_NEAR(json["seidel_sums_declared"]["S1"].get<double>(),
+              json["seidel_sums"]["S1"].get<double>() * std::pow(ratio, 4), 1e-12);
+  EXPECT_NEAR(json["optical_invariant_declared_mm"].get<double>(), json["optical_invariant_mm"].get<double>() * ratio,
+              1e-12);
   ASSERT_EQ(run("report", {path("relay.zmx"), "--out", path("page")}).status, 0);
   const std::string page = read(path("page/relay.html"));
   EXPECT_EQ(page.find("subject at infinity"), std::string::npos);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "petzval/analysis/spot.hpp"
@@ -93,6 +94,9 @@ struct MtfPoint {
   double film_shift_mm = 0;  ///< position of the film relative to the film of the lens
 };
 
+/// The f-number of a lens, and contrasts of several fields: [field][frequency].
+using MtfChart = std::pair<double, Grid<MtfPoint>>;
+
 /// Geometric MTF from spots: [field][frequency].
 ///
 /// @param spots               result of spot_diagram()
@@ -153,6 +157,8 @@ struct ParaxialField {
   double field_rad = 0;  ///< angle of the chief ray in object space; positive if the ray rises along z
   /// Height of the object (mm), used instead of `field_rad`. The object must be at a finite distance.
   std::optional<double> object_height{};
+  /// Diameter of the paraxial entrance pupil (mm), used instead of the rim of the stop.
+  std::optional<double> entrance_pupil_diameter{};
 };
 
 /// The paraxial marginal ray and chief ray of a lens.
@@ -168,8 +174,9 @@ struct ParaxialRays {
 
 /// Paraxial marginal ray and chief ray, surface by surface.
 ///
-/// The marginal ray starts at the axial point of the object, passes the rim of the stop, and has a positive height at
-/// the first vertex. The chief ray passes the centre of the stop. The stop is pupils().stop.
+/// The marginal ray starts at the axial point of the object, passes the rim of the stop or of the given entrance
+/// pupil, and has a positive height at the first vertex. The chief ray passes the centre of the stop. The stop is
+/// pupils().stop.
 ///
 /// @param lens        the lens
 /// @param field       object and field

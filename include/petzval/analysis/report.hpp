@@ -31,6 +31,7 @@ struct LensReport {
     std::vector<double> wavelength_weights = {};  ///< weights of the compiled wavelengths; empty: equal weights
     int first_surface_number = 0;                 ///< number of the first surface in to_json()
     int threads = 1;                              ///< at least 1; the result is the same for every number
+    std::optional<double> entrance_pupil_diameter = {};  ///< declared, mm; nullopt: none
   };
   // As Grid, Quantity has no default values.
   /// A value, or the reason why it cannot be computed.
@@ -58,7 +59,10 @@ struct LensReport {
   /// The object and the largest field of the conditions, for `paraxial_rays` and `seidel`.
   ParaxialField largest_field = {};
   Quantity<ParaxialRays> paraxial_rays = {};
-  Quantity<SeidelSums> seidel = {};                        ///< with colour from the shortest to the longest wavelength
+  Quantity<SeidelSums> seidel = {};  ///< with colour from the shortest to the longest wavelength
+  /// The same for the declared entrance pupil; no value and no `failure` if the conditions have no such pupil.
+  Quantity<ParaxialRays> paraxial_rays_declared = {};
+  Quantity<SeidelSums> seidel_declared = {};
   Quantity<Grid<RayFan>> ray_fans = {};                    ///< [field][wavelength]
   Quantity<std::vector<FieldFocus>> field_curvature = {};  ///< [field]
   Quantity<std::vector<FieldDistortion>> distortion = {};  ///< [field]
@@ -69,6 +73,11 @@ struct LensReport {
   Quantity<std::vector<double>> diffraction_limit = {};  ///< [frequency]: of `mtf`, at the primary wavelength
   /// [field][frequency]: at 10, 20 and 40 per mm for eleven fields up to the largest field; empty if all fields are 0.
   Quantity<Grid<MtfPoint>> mtf_over_field = {};
+  /// [field][frequency]: diffraction_mtf() at 0, 5, 10, 20, ... 100 per mm.
+  Quantity<Grid<MtfPoint>> mtf_diffraction = {};
+  /// f-numbers, and diffraction_mtf() at 10, 20, 30 and 40 per mm at the fields of `mtf_over_field`: of the lens, and
+  /// of the lens at f/8 on the same film if it is faster; empty if all fields are 0.
+  Quantity<std::vector<MtfChart>> mtf_chart = {};
   /// [field][film]: five films, two through_focus_step() to both sides; empty if the spots have no focus.
   Quantity<Grid<ThroughFocusSpot>> through_focus = {};
   Quantity<Grid<EncircledEnergy>> encircled_energy = {};       ///< [field][fraction]: of 0.5, 0.8, 0.9 and 0.95
