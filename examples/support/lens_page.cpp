@@ -161,7 +161,14 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::LensR
           "spherical aberration, coma, "
           "astigmatism, Petzval curvature, distortion, axial and lateral colour. Then height (mm) and slope behind the "
           "surface of the marginal and the chief ray. Optical invariant "
-       << number(rays.invariant, 7) << " mm; " << numbering_in_words(r) << ".</p>\n";
+       << number(rays.invariant, 7) << " mm; " << numbering_in_words(r) << '.';
+  const bool declared(aberrations.seidel_declared);
+  if (declared) {
+    html << " Sums and invariant with the declared entrance pupil of " << number(r.declared_pupil->diameter, 7)
+         << " mm instead of the rim of the stop (paraxial marginal ray, as OpticStudio): invariant "
+         << number(aberrations.paraxial_rays_declared->invariant, 7) << " mm.";
+  }
+  html << "</p>\n";
   head_row(html,
            {"surface", "S1", "S2", "S3", "S4", "S5", "C1", "C2", "marginal y", "marginal u", "chief y", "chief u"});
   const auto terms = [](const petzval::SeidelTerms& t) {
@@ -173,7 +180,8 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::LensR
     values.insert(values.end(), {marginal_y, marginal_u, chief_y, chief_u});
     number_row(html, std::to_string(r.surface_number(i)), values, 5);
   }
-  number_row(html, "sum", terms(sums.sums), 5);
+  number_row(html, declared ? "sum, rim of the stop" : "sum", terms(sums.sums), 5);
+  if (declared) number_row(html, "sum, declared pupil", terms(aberrations.seidel_declared->sums), 5);
   html << "</table></div>\n";
 }
 
@@ -407,9 +415,19 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
       "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
       "aberration that focusing does not remove.",
       [&] { return petzval::focus_figure(colours, spots, weights); });
-  add("mtf", "Contrast",
-      "Contrast of fine lines, by rays. Where the curves of a field separate there is astigmatism or coma.",
-      [&] { return petzval::mtf_figure(colours, subject_z, *aberrations.mtf); });
+  if (aberrations.mtf_chart && !aberrations.mtf_chart->empty()) {
+    add("mtf_chart", "MTF chart",
+        "Contrast from the centre to the edge of the picture, with diffraction, as makers of lenses print it: 10 lines "
+        "per mm show contrast, 30 and 40 sharpness. Makers often call tangential lines meridional and state whether "
+        "diffraction is included.",
+        [&] { return petzval::mtf_chart_figure(colours, subject_z, *aberrations.mtf_chart, weights); });
+  }
+  add("mtf", "Contrast", "Contrast of fine lines. Where the curves of a field separate there is astigmatism or coma.",
+      [&] {
+        const auto& diffraction = aberrations.mtf_diffraction;
+        return petzval::mtf_figure(colours, subject_z, *aberrations.mtf,
+                                   diffraction ? *diffraction : petzval::Grid<petzval::MtfPoint>{{}, 1});
+      });
   if (aberrations.mtf_over_field->size() > 0) {
     add("mtf_field", "Contrast over the field",
         "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "

@@ -145,9 +145,11 @@ std::string field_figure(const Lens& lens, double subject_z, double field_rad) {
   return std::move(svg).finish();
 }
 
-std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
+std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points,
+                       const Grid<MtfPoint>& diffraction) {
   if (points.values.empty()) throw Error("mtf_figure: there are no points; must be at least one");
   constexpr double width = 960, left = 78, top = 84, height = 360;
+  const bool diffracted = !diffraction.values.empty();
   double highest = 0;
   for (const MtfPoint& point : points.values) highest = std::max(highest, point.frequency_per_mm);
   std::vector<figure_detail::Key> keys;
@@ -155,35 +157,51 @@ std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>&
     const std::string name = figure_detail::field_text(points[field].front().field_rad);
     keys.push_back({figure_detail::field_colour(field), name});
   }
-  keys.push_back({"#888", "diffraction limit on the axis"});
+  keys.push_back({"#888", diffracted ? "diffraction limits" : "diffraction limit on the axis"});
   const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width, keys);
   figure_detail::Svg svg(width, last_y + 58);
-  figure_detail::draw_head(svg, lens, "Geometric MTF", subject_z, lens.primary_wavelength());
+  figure_detail::draw_head(svg, lens, diffracted ? "MTF" : "Geometric MTF", subject_z, lens.primary_wavelength());
   Axes axes(svg, left, top, width - left - 24, height, {0, highest > 0 ? highest : 1, "frequency (line pairs per mm)"},
             {0, 1, "contrast"});
-  const double f_number = film_side_f_number(lens);
-  const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
-  std::vector<Axes::Point> limit;
-  for (int k = 0; k <= 100; ++k) {
-    const double frequency = highest * k / 100;
-    limit.push_back({frequency, diffraction_limited_mtf(frequency, nm, f_number)});
-  }
-  axes.curve(limit, "fill=\"none\" stroke=\"#888\" stroke-width=\"1\"");
   figure_detail::draw_keys(svg, left, y, width, keys);
-  for (std::size_t field = 0; field < points.size(); ++field) {
-    std::vector<Axes::Point> tangential, sagittal;
-    for (const MtfPoint& point : points[field]) {
-      tangential.push_back({point.frequency_per_mm, point.tangential});
-      sagittal.push_back({point.frequency_per_mm, point.sagittal});
+  const auto draw = [&](const Grid<MtfPoint>& grid, double MtfPoint::*tangential, double MtfPoint::*sagittal,
+                        const auto& style) {
+    for (std::size_t field = 0; field < grid.size(); ++field) {
+      for (const auto& [contrast, dashes] :
+           {std::pair(tangential, ""), std::pair(sagittal, "stroke-dasharray=\"5 3\"")}) {
+        std::vector<Axes::Point> curve;
+        for (const MtfPoint& point : grid[field]) curve.push_back({point.frequency_per_mm, point.*contrast});
+        axes.curve(curve, style(field) + dashes);
+      }
     }
-    const std::string_view colour = figure_detail::field_colour(field);
-    axes.curve(tangential, curve_style(colour));
-    axes.curve(sagittal, curve_style(colour, "stroke-dasharray=\"5 3\""));
+  };
+  const auto thin = [](std::string_view colour) {
+    return "fill=\"none\" stroke-width=\"0.7\" stroke=\"" + std::string(colour) + "\" ";
+  };
+  const auto bold = [](std::size_t field) { return curve_style(figure_detail::field_colour(field), " "); };
+  if (diffracted) {
+    draw(diffraction, &MtfPoint::tangential_limit, &MtfPoint::sagittal_limit,
+         [&](std::size_t) { return thin("#888"); });
+    draw(points, &MtfPoint::tangential, &MtfPoint::sagittal,
+         [&](std::size_t field) { return thin(figure_detail::field_colour(field)); });
+  } else {
+    const double f_number = film_side_f_number(lens);
+    const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
+    std::vector<Axes::Point> limit;
+    for (int k = 0; k <= 100; ++k) {
+      const double frequency = highest * k / 100;
+      limit.push_back({frequency, diffraction_limited_mtf(frequency, nm, f_number)});
+    }
+    axes.curve(limit, thin("#888"));
   }
+  draw(diffracted ? diffraction : points, &MtfPoint::tangential, &MtfPoint::sagittal, bold);
   svg.text(figure_detail::sheet_margin, last_y + 24,
-           "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, diffraction "
-           "decides. " +
-               figure_detail::sampling_error_text(points.values) + ".",
+           diffracted ? std::string("Solid: tangential, dashed: sagittal; thin: by rays, without diffraction. Error of "
+                                    "the others at most ") +
+                            figure_detail::error_text(diffraction.values) + "."
+                      : "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, "
+                        "diffraction decides. " +
+                            figure_detail::sampling_error_text(points.values) + ".",
            figure_detail::small_text);
   return std::move(svg).finish();
 }

@@ -61,10 +61,14 @@ std::string curve_style(std::string_view colour, std::string_view more) {
          std::string(more);
 }
 
-std::string sampling_error_text(std::span<const MtfPoint> points) {
+std::string error_text(std::span<const MtfPoint> points) {
   double error = 0;
   for (const MtfPoint& point : points) error = std::max(error, point.sampling_error);
-  return "Sampling error " + to_text(std::ceil(error * 1e4) * 1e-4, 2) + " (from quarters of the rays)";
+  return to_text(std::ceil(error * 1e4) * 1e-4, 2);
+}
+
+std::string sampling_error_text(std::span<const MtfPoint> points) {
+  return "Sampling error " + error_text(points) + " (from quarters of the rays)";
 }
 
 std::string length_text(double mm) {

@@ -28,6 +28,9 @@ double round_range(double largest, double least);
 /// Attributes of a curve in a diagram. `more` is appended.
 std::string curve_style(std::string_view colour, std::string_view more = {});
 
+/// The largest error of the points, rounded up to 0.0001.
+std::string error_text(std::span<const MtfPoint> points);
+
 /// "Sampling error 0.002 (from quarters of the rays)", for the largest error of the points.
 std::string sampling_error_text(std::span<const MtfPoint> points);
 

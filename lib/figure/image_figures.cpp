@@ -65,38 +65,77 @@ std::string energy_figure(const Lens& lens, double subject_z, const Grid<Encircl
   return std::move(svg).finish();
 }
 
-std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
-  if (points.size() < 2) {
-    throw Error("mtf_field_figure: " + std::to_string(points.size()) + " fields; must be two or more");
-  }
+namespace {
+
+/// Contrast over image height (mm) in a cell for each f-number, or over the field without f-numbers.
+std::string draw_over_field(const Lens& lens, double subject_z, std::string_view kind, std::span<const MtfChart> charts,
+                            const std::string& note) {
+  const Grid<MtfPoint>& first = charts.front().second;
   std::vector<Key> keys;
-  for (const MtfPoint& point : points[0]) {
+  for (const MtfPoint& point : first[0]) {
     keys.push_back(
         {figure_detail::field_colour(keys.size()), to_text(point.frequency_per_mm, 4) + " line pairs per mm"});
   }
   const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width - right, keys);
   figure_detail::Svg svg(width, last_y + 58);
-  figure_detail::draw_head(svg, lens, "Geometric MTF over the field", subject_z, lens.primary_wavelength());
-  const auto [least, most] = std::ranges::minmax(points.values, {}, &MtfPoint::field_rad);
-  Axes axes(svg, left, top, width - left - right, height,
-            {degrees(least.field_rad), degrees(most.field_rad), "field angle (\u00b0)"}, {0, 1, "contrast"});
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    std::vector<Axes::Point> tangential, sagittal;
-    for (std::size_t field = 0; field < points.size(); ++field) {
-      const MtfPoint& point = points[field][k];
-      const bool dark = point.tangential == 0 && point.sagittal == 0;
-      tangential.push_back({degrees(point.field_rad), dark ? nothing : point.tangential});
-      sagittal.push_back({degrees(point.field_rad), dark ? nothing : point.sagittal});
+  figure_detail::draw_head(svg, lens, kind, subject_z, lens.primary_wavelength());
+  const double step = (width - left - right + 92) / static_cast<double>(charts.size());
+  for (std::size_t cell = 0; cell < charts.size(); ++cell) {
+    const auto& [f_number, points] = charts[cell];
+    const auto position = [in_mm = f_number > 0](const MtfPoint& point) {
+      return in_mm ? point.image_height_mm : degrees(point.field_rad);
+    };
+    double from = 0, to = 0;
+    for (const MtfPoint& point : points.values)
+      from = std::min(from, position(point)), to = std::max(to, position(point));
+    Axes axes(svg, left + step * static_cast<double>(cell), top, step - 92, height,
+              {from, to, f_number > 0 ? "image height at f/" + to_text(f_number, 3) + " (mm)" : "field angle (\u00b0)"},
+              {0, 1, "contrast"});
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      std::vector<Axes::Point> tangential, sagittal;
+      for (std::size_t field = 0; field < points.size(); ++field) {
+        const MtfPoint& point = points[field][k];
+        const bool dark = point.tangential == 0 && point.sagittal == 0;
+        tangential.push_back({position(point), dark ? nothing : point.tangential});
+        sagittal.push_back({position(point), dark ? nothing : point.sagittal});
+      }
+      axes.curve(tangential, curve_style(keys[k].colour));
+      axes.curve(sagittal, curve_style(keys[k].colour, dashes));
     }
-    axes.curve(tangential, curve_style(keys[k].colour));
-    axes.curve(sagittal, curve_style(keys[k].colour, dashes));
   }
   figure_detail::draw_keys(svg, left, y, width - right, keys);
   svg.text(figure_detail::sheet_margin, last_y + 24,
-           "Solid: tangential, dashed: sagittal, straight lines between " + std::to_string(points.size()) +
-               " fields. Rays only, without diffraction. " + figure_detail::sampling_error_text(points.values) + ".",
+           "Solid: tangential, dashed: sagittal, straight lines between " + std::to_string(first.size()) + " fields. " +
+               note,
            figure_detail::small_text);
   return std::move(svg).finish();
+}
+
+}  // namespace
+
+std::string mtf_chart_figure(const Lens& lens, double subject_z, std::span<const MtfChart> charts,
+                             std::span<const double> wavelength_weights) {
+  if (charts.empty()) throw Error("mtf_chart_figure: there are no charts; must be at least one");
+  std::vector<MtfPoint> all;
+  for (const auto& [f_number, points] : charts) {
+    if (points.size() < 2) {
+      throw Error("mtf_chart_figure: " + std::to_string(points.size()) + " heights; must be two or more");
+    }
+    all.insert(all.end(), points.values.begin(), points.values.end());
+  }
+  return draw_over_field(lens, subject_z, "MTF chart", charts,
+                         "With diffraction, " + std::to_string(lens.wavelengths_nm().size()) + " wavelengths with " +
+                             figure_detail::weights_text(wavelength_weights) + ", error at most " +
+                             figure_detail::error_text(all) + ".");
+}
+
+std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
+  if (points.size() < 2) {
+    throw Error("mtf_field_figure: " + std::to_string(points.size()) + " fields; must be two or more");
+  }
+  const MtfChart chart(0, points);
+  return draw_over_field(lens, subject_z, "Geometric MTF over the field", {&chart, 1},
+                         "Rays only, without diffraction. " + figure_detail::sampling_error_text(points.values) + ".");
 }
 
 std::string colour_figure(const Lens& lens, double subject_z, double field_rad) {

@@ -14,8 +14,10 @@
 #include "core/text.hpp"
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/spot.hpp"
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/figure/figures.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {
@@ -110,6 +112,31 @@ TEST(MtfFigures, StateTheirErrorAndLeaveOutDarkFields) {
   const std::array dark{0.0, radians(5.0), radians(80.0)};
   const auto last = testing::paths(mtf_field_figure(lens, far, mtf(dark, 64)), "stroke-width=\"1.6\"");
   for (const testing::Points& curve : last) EXPECT_EQ(curve.size(), 2u);
+}
+
+TEST(MtfFigures, ChartsHaveImageHeightsInMillimetres) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(5.0), radians(9.0)};
+  const std::array frequencies{10.0, 30.0};
+  const auto points = diffraction_mtf(lens, far, fields, frequencies);
+  const std::array charts{MtfChart{2, points},
+                          MtfChart{8, diffraction_mtf(with_f_number(lens, 8), far, fields, frequencies)}};
+  const std::string svg = mtf_chart_figure(lens, far, charts);
+  const auto curves = testing::paths(svg, "stroke-width=\"1.6\"");
+  ASSERT_EQ(curves.size(), 8u);
+  for (std::size_t i = 0; i < 3; ++i) {  // the tangential curve of 30 per mm: contrasts over heights
+    const double part = points[i][0].image_height_mm / points[2][0].image_height_mm;
+    EXPECT_NEAR(curves[2][i].first, 78 + part * (curves[2][2].first - 78), 0.02);
+    EXPECT_NEAR(curves[2][i].second, 84 + 360 * (1 - points[i][1].tangential), 0.02);
+  }
+  EXPECT_NE(svg.find("image height at f/8 (mm)"), std::string::npos);
+  expect_text_within_sheet(svg);
+  const auto spots = spot_diagram(lens, far, fields, 64);
+  const std::string both = mtf_figure(lens, far, geometric_mtf(spots, frequencies), points);
+  EXPECT_EQ(testing::paths(both, "stroke-width=\"1.6\"").size(), 6u);
+  EXPECT_EQ(testing::paths(both, "stroke-width=\"0.7\"").size(), 12u);
+  expect_text_within_sheet(both);
+  testing::expect_error([&] { mtf_chart_figure(lens, far, {}); }, {"charts"});
 }
 
 /// Transmittance of a point in a figure: its frame ends at 100 % on top.

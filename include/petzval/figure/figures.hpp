@@ -115,13 +115,26 @@ PETZVAL_API std::string wavefront_figure(const Lens& lens, double subject_z, con
 /// @throws Error     if the field is not positive; also under the conditions of aim()
 PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double field_rad);
 
-/// Draws geometric MTF over frequency: a colour for each field, tangential solid, sagittal dashed, with the
-/// diffraction limit of the axis at the primary wavelength.
+/// Draws MTF over frequency: a colour for each field, tangential solid, sagittal dashed, with the diffraction limit of
+/// the axis at the primary wavelength.
 ///
 /// @param lens, subject_z  as in layout_figure()
-/// @param points     geometric_mtf() of this lens
+/// @param points       geometric_mtf() of this lens
+/// @param diffraction  diffraction_mtf() of the same fields: the curves, with the limits of the vignetted pupils in
+///                     grey; `points` become thin curves. Empty: `points` only
 /// @throws Error     if there are no points
-PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points);
+PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points,
+                                   const Grid<MtfPoint>& diffraction = {{}, 1});
+
+/// Draws an MTF chart as makers print it: contrast over image height (mm) in a cell for each f-number, a colour for
+/// each frequency, tangential solid, sagittal dashed. Heights from which no ray passes interrupt the curves.
+///
+/// @param lens, subject_z     as in layout_figure()
+/// @param charts              f-numbers, and diffraction_mtf() at the same fields and frequencies
+/// @param wavelength_weights  weights of the compiled wavelengths, stated below; empty: equal weights
+/// @throws Error              if there are no charts, or less than two fields
+PETZVAL_API std::string mtf_chart_figure(const Lens& lens, double subject_z, std::span<const MtfChart> charts,
+                                         std::span<const double> wavelength_weights = {});
 
 /// Draws geometric MTF over the field: a colour for each frequency, tangential solid, sagittal dashed.
 /// Fields from which no ray passes interrupt the curves.
