@@ -2,6 +2,7 @@
 #include "layers/layer_picture.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -78,7 +79,7 @@ std::vector<BrightPart> bright_parts(const petzval::LayerSet& layers, const petz
     for (int x = 0; x < camera.columns; ++x) {
       const float* const rgb = image.pixel(x, y);
       const double sum = std::max(rgb[0], 0.0f) + std::max(rgb[1], 0.0f) + std::max(rgb[2], 0.0f);
-      if (!(std::max({rgb[0], rgb[1], rgb[2]}) > above)) continue;
+      if (!(std::max({rgb[0], rgb[1], rgb[2]}) > above) || std::isinf(sum)) continue;
       const auto k = static_cast<std::size_t>(y * side / camera.rows * side + x * side / camera.columns);
       const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
       sums[k] += sum;

@@ -41,6 +41,7 @@ struct BrightPart {
 };
 
 /// The parts with the most light above a threshold, at most `most` of 24 x 24 parts, by decreasing light.
+/// Infinite pixels do not count.
 std::vector<BrightPart> bright_parts(const petzval::LayerSet& layers, const petzval::LayerCamera& camera, double above,
                                      std::size_t most);
 

@@ -149,7 +149,9 @@ int commands::choose(int argc, char** argv) {
               << examples::bullets(choice.reasons);
     if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
     if (colour) std::cout << "with transmission: " << examples::colour_in_words(*colour)[1] << '\n';
-    if (limit > 0) {
+    if (std::isinf(limit)) {
+      std::cout << "ghosts: none reaches the film\n";
+    } else if (limit > 0) {
       std::cout << "ghosts are visible if a lamp of 1 degree diameter is more than " << examples::number(limit, 3)
                 << " times as bright as its surroundings" << (known ? needed ? ": needed" : ": not needed" : "")
                 << '\n';

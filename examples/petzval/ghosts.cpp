@@ -137,14 +137,16 @@ Json to_json(const GhostPair& pair) {
 
 std::string table_of(const petzval::Ghosts& ghosts, const petzval::GhostAudit& audit) {
   std::ostringstream out;
+  const auto rounded = [](double mm) { return std::abs(mm) < 1e-9 ? 0 : mm; };
   out << std::setprecision(3) << "Light that enters: image " << 100 * audit.image << " %, ghosts " << 100 * audit.ghosts
       << " %, more reflections " << 100 * audit.higher_order << " %, back out " << 100 * audit.back_out
-      << " %, absorbed " << 100 * audit.absorbed << " %, stopped " << 100 * audit.stopped
+      << " %, absorbed " << 100 * rounded(audit.absorbed) << " %, stopped " << 100 * audit.stopped
       << " %\n\nsurfaces   energy    centre (mm)      rms radius (mm)  peak per mm2\n";
   for (const GhostPair& pair : ghosts.pairs) {
     out << std::setw(3) << pair.first << std::setw(4) << pair.second << "  " << std::setw(10) << pair.energy << "  "
-        << std::setw(8) << pair.centre.x << std::setw(9) << pair.centre.y << "  " << std::setw(12) << pair.rms_radius_mm
-        << "  " << std::setw(12) << pair.peak_per_mm2 << (pair.caustic ? "  caustic" : "") << '\n';
+        << std::setw(8) << rounded(pair.centre.x) << ' ' << std::setw(8) << rounded(pair.centre.y) << "  "
+        << std::setw(12) << pair.rms_radius_mm << "  " << std::setw(12) << pair.peak_per_mm2
+        << (pair.caustic ? "  caustic" : "") << '\n';
   }
   return out.str();
 }
@@ -199,7 +201,8 @@ int commands::ghosts(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     constexpr examples::Range counts{1, 1e6, "all, or a whole number from 1 to 1000000"};
     const bool all = options.pairs == "all";
-    const double most = all ? infinity : std::floor(examples::parse_number("--pairs", options.pairs, counts));
+    const double most = all ? infinity : examples::parse_number("--pairs", options.pairs, counts);
+    if (most != std::floor(most)) throw Error("--pairs = " + options.pairs + "; must be " + counts.words);
     const examples::LoadedLens loaded = examples::load_lens(options.setup, options.wavelengths_nm);
     petzval::Lens lens = examples::focused(loaded, options.setup);
     const std::optional<petzval::Lens> coated = examples::coated(lens, options.coatings);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -28,7 +31,7 @@ struct Branch {
 /// Splits rays and adds up where their energy ends.
 class Splitter {
  public:
-  explicit Splitter(const Surfaces& surfaces) : surfaces_(surfaces) {}
+  explicit Splitter(const Surfaces& surfaces, std::uint32_t seed) : surfaces_(surfaces), random_(seed) {}
 
   /// @return false if the ray does not enter the first surface within its rim
   bool split(const Ray<double>& ray, double energy) {
@@ -96,7 +99,7 @@ class Splitter {
           end(ends.absorbed, arriving - left - other.wave.power());
           if (left == 0) {
             branch = other;
-          } else if (step(other)) {
+          } else if (chosen(other) && step(other)) {
             branches_.push_back(other);
           }
         }
@@ -105,6 +108,13 @@ class Splitter {
     }
   }
 
+  /// Chooses some of the reflected branches of a lens of many surfaces at random; they stand for the others.
+  bool chosen(Branch& branch) {
+    const double probability = std::min(1.0, most_split / static_cast<double>(surfaces_.count()));
+    if (probability == 1) return true;
+    scale(branch.wave, 1 / probability);
+    return std::uniform_real_distribution<double>()(random_) < probability;
+  }
   /// Moves on to the next surface; false if the branch leaves through the first.
   bool step(Branch& branch) {
     if (!branch.forward && branch.surface == 0) {
@@ -121,7 +131,10 @@ class Splitter {
   }
   void end(double& sum, double power) const noexcept { sum += power * energy_; }
 
+  static constexpr double most_split = 48;  ///< largest number of surfaces of which all branches are followed
+
   const Surfaces& surfaces_;
+  std::minstd_rand random_;
   double energy_ = 0;
   std::vector<Branch> branches_;
 };
@@ -132,6 +145,7 @@ GhostAudit ghost_audit(const Lens& lens, const ScenePoint& light, const GhostOpt
   if (rays < 1) throw Error("ghost_audit: rays = 0; must be at least 1");
   const GhostPaths paths(lens, light, options);
   const Surfaces surfaces(lens, options.wavelength, options.film_reflectance);
+  rays = std::min(rays, std::max<std::size_t>(32, 100 * rays / std::max<std::size_t>(100, lens.surface_count())));
   // Half of the rays aim at the part of the front through which the image is formed: it may be a thousandth of the
   // front.
   std::vector<lens_detail::Passage> direct;
@@ -146,7 +160,7 @@ GhostAudit ghost_audit(const Lens& lens, const ScenePoint& light, const GhostOpt
   std::vector<GhostAudit> sums((rays + block - 1) / block);
   std::vector<double> entered(sums.size());
   parallel_for(rays, block, options.threads, [&](std::size_t begin, std::size_t end) {
-    Splitter splitter(surfaces);
+    Splitter splitter(surfaces, static_cast<std::uint32_t>(begin + 1));
     for (std::size_t k = begin; k < end; ++k) {
       const Box& from = k % 2 == 1 && lit.high.x > lit.low.x ? lit : box;
       const auto index = static_cast<std::uint32_t>(k / 2);

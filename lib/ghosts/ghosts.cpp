@@ -49,7 +49,10 @@ GhostPaths::GhostPaths(const Lens& lens, const ScenePoint& light, const GhostOpt
     return (sum * sum - squares) / 2;
   };
   std::size_t kept = order.size();
-  while (kept > 1 && kept * (kept - 1) / 2 > options.max_pairs) --kept;
+  // The time of a pair grows with the number of surfaces.
+  constexpr std::size_t most_passages = 200'000;
+  const std::size_t most = std::min(options.max_pairs, most_passages / std::max<std::size_t>(count, 1));
+  while (kept > 1 && kept * (kept - 1) / 2 > most) --kept;
   left_out = order.size() * (order.size() - std::min<std::size_t>(order.size(), 1)) / 2 -
              (kept > 0 ? kept * (kept - 1) / 2 : 0);
   left_out_energy = left_out > 0 ? products(order.size()) - products(kept) : 0;

@@ -28,7 +28,8 @@ struct GhostOptions {
   double film_reflectance = 0;  ///< reflectance of the film, 0 to 1, equal for all angles: the film is a first mirror
   /// The pairs that are computed, as (GhostPair::first, GhostPair::second); empty: all
   std::vector<std::array<std::size_t, 2>> only{};
-  /// Largest number of pairs. The pairs of the surfaces with the highest reflectances at normal incidence are kept.
+  /// Largest number of pairs; for lenses of more than 100 surfaces, at most 200000 divided by their number. The pairs
+  /// of the surfaces with the highest reflectances at normal incidence are kept.
   std::size_t max_pairs = 2000;
   bool starburst = false;  ///< add_ghosts() also adds the light that the edges of the pupil diffract
   /// Target for the relative error of the energy of a pair; reached with at most 256^2 rays.
@@ -126,7 +127,8 @@ struct GhostAudit {
 /// Branches with more than two reflections are followed down to 1e-5 of the ray. The reflectance of the film counts as
 /// a reflection. `ghosts` comes from ghost_pairs(), all other numbers from split rays.
 ///
-/// @param rays  number of rays that are split, at least 1
+/// @param rays  number of rays that are split, at least 1; fewer for lenses of more than 100 surfaces. Of more than 48
+///              surfaces, some reflected branches are chosen at random
 /// @throws Error as ghost_pairs()
 ///
 /// Accuracy: sum within 0.005 of 1 (tests/ghosts).
