@@ -60,7 +60,8 @@ class DirectionMap {
       rows.row(i) = powers((behind[at] - middle_) / half_);
       positions.row(i) << reached[at].x, reached[at].y;
     }
-    coefficients_ = core_detail::least_squares(rows, positions);
+    coefficients_.resize(terms, 2);
+    for (const int axis : {0, 1}) coefficients_.col(axis) = core_detail::least_squares(rows, positions.col(axis));
   }
 
   bool empty() const noexcept { return half_ == 0; }

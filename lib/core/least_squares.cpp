@@ -5,7 +5,7 @@
 
 namespace petzval::core_detail {
 
-Eigen::MatrixXd least_squares(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& values) {
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-9);
   return decomposition.compute(rows).solve(values);
