@@ -3,9 +3,7 @@
 // distances] is one position of the lens. Sources of the form: the documentation of Beam42's LensTool2, and the grammar
 // printed by the lens editor of the same tables.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,6 +13,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
+#include "positions.hpp"
 #include "readers.hpp"
 #include "text_file.hpp"
 
@@ -44,29 +43,9 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// A row of [variable distances]: one value per position.
-struct Variable {
-  int line = 0;
-  std::vector<std::string> values;
-  bool used = false;
-};
-
-/// A length as a number or as the name of a variable; unknown if both are absent.
-struct Length {
-  std::optional<double> number;
-  Variable* variable = nullptr;
-};
-
-/// A row of [lens data] with its lengths, which may vary.
-struct Row {
-  int line = 0;
-  std::string id;
-  Length thickness, diameter;
-};
-
 class OpticalBenchReader {
  public:
-  explicit OpticalBenchReader(Import& in) : in_(in) {}
+  explicit OpticalBenchReader(Import& in) : in_(in), positions_(in) {}
   void read(std::string_view text);
 
  private:
@@ -79,33 +58,14 @@ class OpticalBenchReader {
   void note(const Cells& cells);
   Length length(int line, const char* what, std::string_view cell);
   int odd_count() const;
-  void name_variables();
-
-  std::optional<double> value(const Variable& variable, std::size_t column) const;
-  std::optional<double> value(std::string_view name, std::size_t column) const;
-  std::optional<double> value(const Length& length, std::size_t column) const;
-  bool is_defined(std::size_t column) const;
-  std::vector<std::size_t> defined_columns();
-  void place(std::size_t column);
-  void declare(std::size_t column);
-  Configuration configuration(std::size_t column, std::size_t base);
-  void configure(const std::vector<std::size_t>& columns);
-  void place_film(const std::vector<std::size_t>& columns);
 
   Import& in_;
   std::string section_;
-  std::map<std::string, Variable, std::less<>> variables_;
   std::map<std::string, std::pair<int, std::string>> constants_;
-  std::vector<Row> rows_;
   std::map<std::string, std::size_t> row_of_;  ///< row index by the name in the first column
   std::set<std::size_t> aspheres_;
   std::vector<std::string> scenarios_, names_;
-};
-
-/// Names of rows that state a property of each position and not a distance of the lens.
-constexpr std::array<std::string_view, 9> quantities = {
-    "Focal Length", "F-Number", "Angle of View", "Image Height",      "Magnification",
-    "NA",           "WD",       "Total Length",  "Aperture Diameter",
+  Positions positions_;
 };
 
 void OpticalBenchReader::read(std::string_view text) {
@@ -123,13 +83,12 @@ void OpticalBenchReader::read(std::string_view text) {
     }
     take(lines.number(), cells);
   }
-  if (rows_.empty()) throw Error(in_.where() + ": no rows of [lens data]; must be at least one surface");
-  name_variables();
-  const auto columns = defined_columns();
-  place(columns.front());
-  declare(columns.front());
-  configure(columns);
-  place_film(columns);
+  if (positions_.rows.empty()) throw Error(in_.where() + ": no rows of [lens data]; must be at least one surface");
+  for (std::size_t i = 0; scenarios_.size() == names_.size() && i < names_.size(); ++i) {
+    positions_.names.emplace(scenarios_[i], names_[i]);
+  }
+  positions_.apply();
+  in_.lens.semi_diameters = "half of the table's diameters";
 }
 
 void OpticalBenchReader::take(int line, const Cells& cells) {
@@ -138,7 +97,7 @@ void OpticalBenchReader::take(int line, const Cells& cells) {
   if (section_ == "report data") return take_report(cells);
   if (section_ == "descriptive data" || section_ == "notes" || section_ == "patent info") return note(cells);
   if (section_ == "variable distances") {
-    Variable& variable = variables_[std::string(cells[0])];
+    Variable& variable = positions_.variables[std::string(cells[0])];
     if (variable.line > 0) in_.refuse(line, cells[0], "a second row", "a single row");
     variable.line = line;
     variable.values.assign(cells.begin() + 1, cells.end());
@@ -167,7 +126,7 @@ void OpticalBenchReader::take_report(const Cells& cells) {
 
 Length OpticalBenchReader::length(int line, const char* what, std::string_view cell) {
   if (cell.empty()) return {};
-  if (const auto named = variables_.find(cell); named != variables_.end()) {
+  if (const auto named = positions_.variables.find(cell); named != positions_.variables.end()) {
     named->second.used = true;
     return {{}, &named->second};
   }
@@ -184,7 +143,7 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
     in_.refuse(line, "row", std::to_string(cells.size()) + " columns",
                "a name, radius, thickness, index, diameter and V-number, separated by tabs");
   }
-  in_.limit(rows_.size() + 1);
+  in_.limit(positions_.rows.size() + 1);
   SurfaceRow surface;
   const std::string_view radius = cell(1);
   if (radius == "AS") {
@@ -210,9 +169,9 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
     surface.medium = {.nd = *nd, .vd = vd};
   }
   std::string id(cell(0));
-  if (!row_of_.emplace(id, rows_.size()).second)
+  if (!row_of_.emplace(id, positions_.rows.size()).second)
     in_.refuse(line, "row", "name " + id + " of an earlier row", "a unique name");
-  rows_.push_back({line, std::move(id), length(line, "thickness", cell(2)), length(line, "diameter", cell(4))});
+  positions_.rows.push_back({line, length(line, "thickness", cell(2)), length(line, "diameter", cell(4))});
   in_.lens.surfaces.push_back(std::move(surface));
 }
 
@@ -254,164 +213,6 @@ void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
     }
     order += order < 2 * odd + 2 ? 1 : 2;
   }
-}
-
-/// Warns of rows that no surface refers to and the format does not define.
-void OpticalBenchReader::name_variables() {
-  for (const auto& [name, variable] : variables_) {
-    const bool known = variable.used || name == "d0" || name == "Bf" || std::ranges::count(quantities, name) > 0;
-    if (!known) in_.warn(variable.line, name, "no surface has this distance; it is left out");
-  }
-}
-
-/// The value of a row in a position; nullopt for "undefined" and empty cells. A single value holds for all positions.
-std::optional<double> OpticalBenchReader::value(const Variable& variable, std::size_t column) const {
-  const std::size_t at = variable.values.size() == 1 ? 0 : column;
-  if (at >= variable.values.size()) return {};
-  const std::string& text = variable.values[at];
-  if (text.empty() || same(text, "undefined")) return {};
-  if (same(text, "Infinity")) return std::numeric_limits<double>::infinity();
-  return in_.number(variable.line, "value", text);
-}
-
-std::optional<double> OpticalBenchReader::value(std::string_view name, std::size_t column) const {
-  const auto found = variables_.find(name);
-  return found == variables_.end() ? std::nullopt : value(found->second, column);
-}
-
-std::optional<double> OpticalBenchReader::value(const Length& length, std::size_t column) const {
-  return length.variable ? value(*length.variable, column) : length.number;
-}
-
-/// True if all distances between surfaces have values in a position. The last distance, to the film, may be missing.
-bool OpticalBenchReader::is_defined(std::size_t column) const {
-  return std::ranges::all_of(rows_.begin(), rows_.end() - 1, [&](const Row& row) {
-    const auto thickness = value(row.thickness, column);
-    return thickness && std::isfinite(*thickness);
-  });
-}
-
-std::vector<std::size_t> OpticalBenchReader::defined_columns() {
-  std::size_t count = 1;
-  for (const auto& [name, variable] : variables_) {
-    const bool counts = variable.used || std::ranges::count(quantities, name) > 0 || name == "d0";
-    if (counts) count = std::max(count, variable.values.size());
-  }
-  for (const Row& row : rows_) {
-    if (&row != &rows_.back() && !row.thickness.number && !row.thickness.variable) {
-      in_.refuse(row.line, "thickness", "missing", "a number or a row of [variable distances]");
-    }
-  }
-  std::vector<std::size_t> columns;
-  for (std::size_t column = 0; column < count; ++column) {
-    if (is_defined(column)) {
-      columns.push_back(column);
-    } else {
-      in_.warn(0, "variable distances",
-               "column " + std::to_string(column + 1) + " is left out: it does not state all distances");
-    }
-  }
-  if (columns.empty())
-    throw Error(in_.where() + ": no column of [variable distances] states all distances; must be at least one column");
-  return columns;
-}
-
-/// Sets the rows to one position.
-void OpticalBenchReader::place(std::size_t column) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    SurfaceRow& surface = in_.lens.surfaces[i];
-    const auto thickness = value(rows_[i].thickness, column);
-    surface.thickness = thickness.value_or(0);
-    auto diameter = value(rows_[i].diameter, column);
-    if (surface.stop) diameter = value("Aperture Diameter", column) ? value("Aperture Diameter", column) : diameter;
-    surface.semi_diameter.reset();
-    if (diameter && std::isfinite(*diameter) && *diameter > 0) surface.semi_diameter = *diameter / 2;
-  }
-  in_.lens.semi_diameters = "half of the table's diameters";
-}
-
-std::optional<double> positive(std::optional<double> value) {
-  return value && *value > 0 && std::isfinite(*value) ? value : std::nullopt;
-}
-
-void OpticalBenchReader::declare(std::size_t column) {
-  Prescription& lens = in_.lens;
-  const auto focal_length = value("Focal Length", column), field = positive(value("Angle of View", column));
-  if (focal_length && std::isfinite(*focal_length)) lens.focal_length_mm = focal_length;
-  lens.f_number = positive(value("F-Number", column));
-  in_.requests.nominal_aperture = true;
-  lens.image_diagonal_mm = positive(value("Image Height", column));
-  if (lens.f_number) {
-    lens.design.aperture = {ApertureSetting::f_number, *lens.f_number};
-  } else if (const auto na = positive(value("NA", column))) {
-    lens.design.aperture = {ApertureSetting::object_na, *na};
-  }
-  if (field && *field < 360) {
-    lens.half_field_deg = *field / 2;
-    lens.design.fields = {{.y = *field / 2}};
-  }
-  if (const auto object = value("d0", column)) lens.design.object_distance_mm = *object;
-  lens.design.wavelengths = {{d_line_nm, 1}};
-}
-
-/// A position, with only the changes from the rows of `base`.
-Configuration OpticalBenchReader::configuration(std::size_t column, std::size_t base) {
-  place(base);
-  const Prescription rows = in_.lens;
-  place(column);
-  Configuration result;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    SurfaceChange change{.surface = static_cast<int>(i)};
-    const SurfaceRow &old = rows.surfaces[i], &now = in_.lens.surfaces[i];
-    if (now.thickness != old.thickness) change.thickness = now.thickness;
-    if (now.semi_diameter && now.semi_diameter != old.semi_diameter) change.semi_diameter = now.semi_diameter;
-    if (change.thickness || change.semi_diameter) result.changes.push_back(change);
-  }
-  result.subject_distance_mm = positive(value("d0", column));
-  const auto focal_length = value("Focal Length", column);
-  if (focal_length && std::isfinite(*focal_length)) result.focal_length_mm = focal_length;
-  result.f_number = positive(value("F-Number", column));
-  result.image_diagonal_mm = positive(value("Image Height", column));
-  const auto field = positive(value("Angle of View", column));
-  if (field && *field < 360) result.half_field_deg = *field / 2;
-  return result;
-}
-
-/// Makes a configuration of each column. Names are in [report data], or follow from the subject distances.
-void OpticalBenchReader::configure(const std::vector<std::size_t>& columns) {
-  if (columns.size() < 2) return;
-  const auto line_of = [&](std::string_view name) {
-    const auto found = variables_.find(name);
-    return found == variables_.end() ? 0 : found->second.line;
-  };
-  UnnamedPositions positions{line_of("d0") > 0 ? line_of("d0") : line_of("Magnification"), {}};
-  for (const std::size_t column : columns) {
-    Configuration& c = in_.lens.configurations.emplace_back(configuration(column, columns.front()));
-    Position& position = positions.list.emplace_back();
-    // d0 takes precedence over a magnification.
-    const auto magnification = value("d0", column) ? std::nullopt : value("Magnification", column);
-    if (magnification && std::isfinite(*magnification) && *magnification != 0) position.magnification = magnification;
-    const auto scenario = std::ranges::find(scenarios_, std::to_string(column));
-    if (scenario != scenarios_.end() && scenarios_.size() == names_.size()) {
-      c.name = names_[static_cast<std::size_t>(scenario - scenarios_.begin())];
-    }
-    position.is_named = !c.name.empty();
-    if (!position.is_named) c.name = "position " + std::to_string(column + 1);
-  }
-  place(columns.front());
-  in_.requests.positions = std::move(positions);
-}
-
-/// Requests the positions of the film that the table does not state.
-void OpticalBenchReader::place_film(const std::vector<std::size_t>& columns) {
-  const Row& last = rows_.back();
-  FilmAtFocus film{last.line, "thickness", "the position of the film is not stated", true, false, {}};
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (value(last.thickness, columns[i])) continue;
-    if (i == 0) film.in_the_rows = true;
-    if (i > 0) film.configurations.push_back(i);
-  }
-  if (film.in_the_rows || !film.configurations.empty()) in_.requests.film_at_focus = std::move(film);
 }
 
 }  // namespace
