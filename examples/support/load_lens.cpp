@@ -68,16 +68,16 @@ std::filesystem::path lens_path(const std::string& text) {
 
 constexpr const char* lens_help =
     "a shipped lens (petzval lenses) or a file: JSON as in data/lenses, .zmx, .seq, .len, .lens, OpticalBench or other "
-    "tables";
+    "tables, a page of a patent";
 
 Option* add_lens_options(App& app, petzval::LensSource& input, Option* lens) {
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
       ->needs(lens);
-  app.add_option("--configuration", input.configuration,
-                 "position of a zoom lens, by name or by number from 0; or a lens of a database, by its key or name "
-                 "(2004, or 2004/long)")
+  app.add_option("--embodiment,--configuration", input.configuration,
+                 "position of a zoom lens, by name or by number from 0; or a lens of a database or of a page with "
+                 "several, by its key, name or number from 1 (2004, or 2004/long)")
       ->default_str("the first")
       ->needs(lens);
   app.add_flag("--match-glasses", input.match_glasses,
@@ -149,7 +149,8 @@ LensFile read_lens(const petzval::LensSource& input) {
   std::string id = input.prescription ? whole.id : lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
-  constexpr std::array<std::string_view, 5> formats_from_1{"zemax", "codev", "oslo", "opticalbench", "table"};
+  constexpr std::array<std::string_view, 6> formats_from_1{"zemax",        "codev",       "oslo",
+                                                           "opticalbench", "patent page", "table"};
   const bool from_1 =
       prescription.imported && std::ranges::find(formats_from_1, prescription.imported->format) != formats_from_1.end();
   return {std::move(id), std::move(prescription), std::move(glasses), from_1, std::move(whole), input};

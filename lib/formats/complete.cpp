@@ -16,6 +16,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/apertures.hpp"
 #include "petzval/trace/trace.hpp"
+#include "text_file.hpp"
 
 namespace petzval::formats_detail {
 namespace {
@@ -133,6 +134,7 @@ class Completion {
   void solve(const ThicknessSolve& solve);
   void put_film_at_focus();
   void compare_focal_length();
+  void prove_table(const Prescription& lens, double stated, const std::string& position);
   void check_telecentric() const;
   void find_subject_distances();
   void name_positions();
@@ -305,6 +307,15 @@ void Completion::put_film_at_focus() {
 /// Accepts a nominal focal length within 1 %, as it has few digits.
 void Completion::compare_focal_length() {
   const StatedFocalLength& stated = *asked_.focal_length;
+  if (stated.proves_table) {
+    prove_table(lens_, stated.mm, "");
+    for (std::size_t i = 1; i < lens_.configurations.size(); ++i) {
+      const Configuration& c = lens_.configurations[i];
+      if (c.focal_length_mm && !c.subject_distance_mm)
+        prove_table(configured(lens_, i), *c.focal_length_mm, ", in " + c.name);
+    }
+    return;
+  }
   const FirstOrder first = first_order_of(lens_);
   if (!first.afocal && std::abs(std::abs(first.effective_focal_length) / stated.mm - 1) < 0.01) {
     lens_.focal_length_mm = std::copysign(stated.mm, first.effective_focal_length);
@@ -313,6 +324,35 @@ void Completion::compare_focal_length() {
              "states " + to_text(stated.mm) + " mm, which is not the focal length" +
                  (first.afocal ? " of an afocal lens" : ", " + to_text(first.effective_focal_length, 6) + " mm"));
   }
+}
+
+/// Refuses a lens whose focal length is not the printed one: a number of the table is then wrong. A radius whose sign
+/// explains the difference is named. A table for a focal length of 1, 10, 100 or 1000 is accepted.
+void Completion::prove_table(const Prescription& lens, double stated, const std::string& position) {
+  const auto off = [&](const Prescription& rows) {
+    const FirstOrder first = first_order_of(rows);
+    return first.afocal ? HUGE_VAL : std::abs(std::abs(first.effective_focal_length / stated) - 1);
+  };
+  const double found = off(lens);
+  if (found < 0.02) return;
+  for (const double normal : {1.0, 10.0, 100.0, 1000.0}) {
+    const double scaled = first_order_of(lens).effective_focal_length / normal;
+    if (std::abs(scaled - 1) < 0.02) return;  // compare_the_declared() warns
+  }
+  const StatedFocalLength& asked = *asked_.focal_length;
+  const FirstOrder first = first_order_of(lens);
+  const std::string is = to_text(stated) + " mm, and the table gives " +
+                         (first.afocal ? "no focal length" : to_text(first.effective_focal_length, 6) + " mm") +
+                         position;
+  std::string suspect;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    Prescription changed = lens;
+    changed.surfaces[i].radius *= -1;
+    if (lens.surfaces[i].radius == 0 || off(changed) > 0.005) continue;
+    append(suspect, ", ", to_text(lens.surfaces[i].radius) + " in line " + std::to_string(line_of(i)));
+  }
+  in_.refuse(asked.line, asked.command, is,
+             "the same within 2 %" + (suspect.empty() ? "" : "; the sign of a radius may be missing: " + suspect));
 }
 
 /// A telecentric object space has its pupil at infinity, but a file may ask for it with any position of the stop. The

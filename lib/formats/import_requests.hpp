@@ -37,6 +37,8 @@ struct StatedFocalLength {
   std::string command;
   double mm = 0;
   bool is_default = false;  ///< true if the program writes this number for every new lens
+  /// True if the numbers were printed and copied: a lens whose focal length is off by more than 2 % is refused.
+  bool proves_table = false;
 };
 
 /// A column of apertures that may be diameters or semi-diameters. The surfaces of the lens already have half of the

@@ -20,7 +20,7 @@ using namespace formats_detail;
 
 constexpr const char* rule =
     "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
-    "surfaces, lentil or optiland JSON";
+    "surfaces, a page of a patent, lentil or optiland JSON";
 
 /// The formats in the order in which they are tried; each accepts only files that it recognises with certainty.
 constexpr std::array formats{
@@ -31,6 +31,7 @@ constexpr std::array formats{
     Format{"lentil", is_lentil, read_lentil},
     Format{"flaresim", is_flaresim, read_flaresim},
     Format{"codev", is_codev, read_codev},
+    Format{"patent page", is_page, read_page},
     Format{"table", is_table, read_table},
 };
 

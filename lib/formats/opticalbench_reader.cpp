@@ -219,7 +219,8 @@ void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
 
 bool is_opticalbench(std::string_view text) {
   for (Lines lines(text); lines.next() && lines.number() <= 10'000;) {
-    if (lower(trimmed(lines.text().substr(0, 64))).starts_with("[lens data]")) return true;
+    // Patents print the same title above a head of columns.
+    if (lower(trimmed(lines.text().substr(0, 64))).starts_with("[lens data]")) return !is_page(text);
   }
   return false;
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "import.hpp"
+#include "table_text.hpp"
 
 namespace petzval::formats_detail {
 
@@ -38,9 +40,15 @@ void read_optiland(std::string_view text, Import& in);
 bool is_oslo(std::string_view text);
 void read_oslo(std::string_view text, Import& in);
 
+/// A page of a patent has a table of surfaces, and sections, names of radii or short rows.
+bool is_page(std::string_view text);
+void read_page(std::string_view text, Import& in);
+
 /// A table has a row of two numbers, or of a plane and a number, among its first lines, behind a label or a mark.
 bool is_table(std::string_view text);
 void read_table(std::string_view text, Import& in);
+/// Reads lines that are divided into cells: a head, and rows.
+void read_table(std::vector<TableLine> lines, Import& in);
 
 /// A .zmx has surfaces "SURF n" and one of the words that begin such files.
 bool is_zemax(std::string_view text);

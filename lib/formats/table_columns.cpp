@@ -19,20 +19,23 @@ struct Heads {
 };
 
 constexpr Heads all_heads[] = {
-    {Column::number, "# no nr num number row s s# sno i id surf surf# surface surface# surfaceno surfacenumber"},
-    {Column::radius, "r rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
+    {Column::number,
+     "# no nr num number row m s s# si sn sno i id surf surf# surface surface# surfaceno surfacenumber"},
+    {Column::radius, "r ri rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
     {Column::curvature, "c cv cuy curv curvature"},
     {Column::thickness,
-     "d t th thi thick thickness dist distance gap spacing separation thicknessdistance "
-     "axialdistance axialthickness"},
+     "d di t th thi thick thickness dist distance gap space spacing separation interval thicknessdistance "
+     "axialdistance axialthickness surfacedistance surfaceinterval surfaceseparation surfacespacing onaxisdistance "
+     "onaxisspacing "
+     "axialspacing airgap thicknessorairgap"},
     {Column::gap_before, "gapbefore gapinfront thicknessbefore distancebefore axpos"},
-    {Column::index, "n nd index ior refindex refractiveindex"},
-    {Column::abbe, "v vd v# vno vnumber nu nud abbe abbeno abbenumber abbevd dispersion"},
-    {Column::glass, "glass glas glassname glasstype material mat medium"},
+    {Column::index, "n nd ndj nj index ior refindex refractiveindex indexofrefraction"},
+    {Column::abbe, "v vd vdj vj v# vno vnumber nu nud abbe abbeno abbenumber abbe'snumber abbevd dispersion"},
+    {Column::glass, "glass glas glassname glasstype material mat mat'l matl medium"},
     {Column::catalogue, "catalog catalogue maker manufacturer"},
     {Column::semi_diameter,
-     "semi sd sa semidia semidiam semidiameter semiap semiaperture clearsemidiameter "
-     "clearsemiaperture clearradius apertureradius housingradius halfdiameter halfaperture"},
+     "semi sd sa effectiveradius effradius semidia semidiam semidiameter semiap semiaperture clearsemidiameter "
+     "clearsemiaperture clearsemidia clearradius apertureradius housingradius halfdiameter halfaperture"},
     {Column::diameter,
      "dia diam diameter ca clearaperture cleardiameter cleardia effectivediameter aperturediameter "
      "fulldiameter"},
@@ -148,6 +151,12 @@ std::optional<TableColumn> column_of(std::string_view head) {
     column.of_sphere = name == "kappa" ? 1 : 0;
     return column;
   }
+  // "Refractive index nd" in a single cell.
+  const std::size_t blank = std::min(head.rfind(' '), head.size());
+  if (head.size() - blank <= 5 && blank < head.size()) {
+    const auto word = kind_of(plain(head.substr(0, blank)).name), sign = kind_of(plain(head.substr(blank)).name);
+    if (word && word == sign) return TableColumn{.kind = *word, .name = std::string(head)};
+  }
   if (const auto order = order_of_term(name)) {
     column.kind = Column::term;
     column.order = *order;
@@ -175,8 +184,13 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
         taken = more + 1;
       }
     }
-    columns.push_back(std::move(column));
     i += taken;
+    // "Refractive index nd", "Radius of curvature R": a word and its sign are one head.
+    const auto sign = by_blanks && i < cells.size() && cells[i].size() <= 4 && column.name.size() > 4
+                          ? column_of(cells[i])
+                          : std::nullopt;
+    if (sign && sign->kind == column.kind && column.kind <= Column::abbe && column.kind > Column::number) ++i;
+    columns.push_back(std::move(column));
   }
   // Two heads are ambiguous: "index" is a row number if there is also "nd", and a second "d" ("r d n D") is a diameter.
   const auto find = [&](Column kind) { return std::ranges::find(columns, kind, &TableColumn::kind); };

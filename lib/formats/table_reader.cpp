@@ -22,25 +22,6 @@ namespace {
 
 using io_detail::in_quotes;
 
-/// The mark of the stop or of an asphere after the number of a row: "4(stop)", "4 STO", "4S", "4(ASP)"; empty if there
-/// is no mark.
-std::string_view mark_of(std::string_view label) {
-  const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
-  std::string_view mark = label.substr(end);
-  while (mark.starts_with(' ')) mark.remove_prefix(1);
-  const bool marks = is_stop_word(mark) || is_asphere_mark(mark) || same(mark, "s");
-  return end > 0 && marks ? mark : std::string_view();
-}
-
-/// The number at the start of a row: "3", "S3", "3*", "*3)", "3.", "3(stop)"; nullopt for other text.
-std::optional<int> label_of(std::string_view cell) {
-  cell.remove_suffix(mark_of(cell).size());
-  if (!cell.empty() && std::string_view("Ss#*").find(cell[0]) != std::string_view::npos) cell.remove_prefix(1);
-  while (!cell.empty() && std::string_view("*.):").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
-  if (cell.empty() || cell.size() > 5 || cell.find_first_not_of("0123456789") != std::string_view::npos) return {};
-  return static_cast<int>(*number(cell));
-}
-
 bool is_object_word(std::string_view cell) { return is_one_of(cell, "obj object"); }
 bool is_image_word(std::string_view cell) { return is_one_of(cell, "ima img image film sensor si"); }
 
@@ -61,6 +42,7 @@ struct RawRow {
 class TableReader {
  public:
   TableReader(std::string_view text, Import& in) : text_(text), in_(in) {}
+  TableReader(std::vector<TableLine> lines, Import& in) : text_(std::move(lines)), in_(in) {}
   void read();
 
  private:
@@ -601,5 +583,7 @@ bool is_table(std::string_view text) {
 }
 
 void read_table(std::string_view text, Import& in) { TableReader(text, in).read(); }
+
+void read_table(std::vector<TableLine> lines, Import& in) { TableReader(std::move(lines), in).read(); }
 
 }  // namespace petzval::formats_detail

@@ -218,6 +218,22 @@ bool is_asphere_mark(std::string_view cell) {
   return is_one_of(without_brackets(cell), "asp asph asph. asphere aspheric *");
 }
 
+std::string_view mark_of(std::string_view label) {
+  const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
+  std::string_view mark = label.substr(end);
+  while (mark.starts_with(' ')) mark.remove_prefix(1);
+  const bool marks = is_stop_word(mark) || is_asphere_mark(mark) || same(mark, "s");
+  return end > 0 && marks ? mark : std::string_view();
+}
+
+std::optional<int> label_of(std::string_view cell) {
+  cell.remove_suffix(mark_of(cell).size());
+  if (!cell.empty() && std::string_view("Ss#*").find(cell[0]) != std::string_view::npos) cell.remove_prefix(1);
+  while (!cell.empty() && std::string_view("*.):").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
+  if (cell.empty() || cell.size() > 5 || cell.find_first_not_of("0123456789") != std::string_view::npos) return {};
+  return static_cast<int>(*number(cell));
+}
+
 bool is_none(std::string_view cell) { return cell.empty() || is_one_of(cell, "- -- --- none n/a ."); }
 
 }  // namespace petzval::formats_detail

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace petzval::formats_detail {
@@ -30,6 +31,8 @@ class TableText {
   static constexpr std::size_t most_cells = 64;  ///< one more cell is kept, for the message
 
   explicit TableText(std::string_view text);
+  /// Lines that are already divided into cells, which may be empty.
+  explicit TableText(std::vector<TableLine> divided) : lines(std::move(divided)), separator_('\t') {}
   TableText(const TableText&) = delete;
   TableText& operator=(const TableText&) = delete;
 
@@ -65,6 +68,11 @@ bool is_stop_word(std::string_view cell);
 /// True for the marks of aspheric surfaces: "(ASP)", "ASPH", "*". Without a row number, "ASP" and "*" of a plane mark
 /// the stop.
 bool is_asphere_mark(std::string_view cell);
+/// The mark of the stop or of an asphere after the number of a row: "4(stop)", "4 STO", "4S", "4(ASP)"; empty if there
+/// is no mark.
+std::string_view mark_of(std::string_view label);
+/// The number at the start of a row: "3", "S3", "3*", "*3)", "3.", "3(stop)"; nullopt for other text.
+std::optional<int> label_of(std::string_view cell);
 /// True for an empty cell and for "-", "--", "---", "none", "n/a" and ".".
 bool is_none(std::string_view cell);
 

@@ -21,7 +21,8 @@ struct ReadOptions {
   bool strict = false;
   /// Indices of glasses that a file only names; nullptr: glass_tables(), loaded if a name occurs.
   const GlassCatalogue* glasses = nullptr;
-  /// The lens to read from a lentil database: its key, or its name if the name is unique. Other formats ignore it.
+  /// The lens to read: its key or unique name in a lentil database, the number of its table (from 1) on a page with
+  /// several tables. Other formats ignore it.
   /// Prescription::imported->entry is the key of the lens that was read.
   std::string entry{};
 };
@@ -34,6 +35,7 @@ struct ReadOptions {
 ///     oslo                  .len
 ///     opticalbench          the tables of Photons to Photos, .txt
 ///     flaresim              .lens
+///     patent page           a printed page with a table of surfaces, aspheric data and positions (data/README.md)
 ///     table                 rows of numbers, with or without headings: from renderers, patents, CSV (data/README.md)
 ///     lentil, optiland      JSON; from a lentil database, the lens of ReadOptions::entry
 ///

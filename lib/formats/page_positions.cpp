@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "page_positions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "page_table.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+/// The names of Positions, with half angles and half heights, and the names of pages in lower case without blanks and
+/// punctuation. "" names what is not read.
+constexpr std::array<std::pair<const char*, std::string_view>, 12> quantities = {{
+    {"Focal Length", "f f' fl efl focallength effectivefocallength focallengthf"},
+    {"F-Number", "fno fnumber f/# f/no f/number fn f# numericalaperturefno fnumberfno"},
+    {"Angle of View", "2w 2\u03c9 2omega fullangleofview fullfieldangle totalangleofview"},
+    {"half angle", "w \u03c9 omega halfangle halfangleofview halffieldangle halfviewangle halfview"},
+    {"angle", "angleofview viewangle viewingangle fieldangle angleoffield fieldofview picturingangle"},
+    {"half height", "imageheight y y' ymax maximumimageheight imageheighty maximageheight ih"},
+    {"Image Height", "imagediagonal diagonal imagecircle imagecirclediameter"},
+    {"Bf", "bf fb b.f bfl backfocus backfocallength bk"},
+    {"Magnification", "\u03b2 beta magnification photographicmagnification imagingmagnification lateralmagnification"},
+    {"d0", "d0 objectdistance subjectdistance shootingdistance workingdistance"},
+    {"Total Length", "tl totallength totallenslength overalllength lenstotallength totaltracklength ttl wholelength"},
+    {"", "zr zoomratio zoomingratio variablemagnificationratio variablepowerratio"},
+}};
+
+std::string plain(std::string_view name) {
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const std::size_t close = name[i] == '(' ? name.find(')', i) : name[i] == '[' ? name.find(']', i) : name.npos;
+    if (close != name.npos) {
+      i = close;
+    } else if (std::string_view(" \t()[]:,.*-").find(name[i]) == std::string_view::npos) {
+      result += lower(name[i]);
+    }
+  }
+  return result;
+}
+
+/// The number in "1:2.8" and "f/2.8", or the token.
+PageToken without_ratio(const PageToken& token) {
+  for (const std::string_view start : {"1:", "f/", "F/", "F"}) {
+    if (!token.text.starts_with(start)) continue;
+    const std::string_view rest = std::string_view(token.text).substr(start.size());
+    if (number(rest)) return {std::string(rest), true};
+  }
+  return token;
+}
+
+}  // namespace
+
+std::optional<std::string> PagePositions::quantity(std::string_view name) const {
+  const std::string word = plain(name);
+  const auto found = std::ranges::find_if(quantities, [&](const auto& q) { return is_one_of(word, q.second); });
+  if (found != quantities.end()) return found->first;
+  const std::string gap = variable_name(name);
+  return gap.empty() || !gaps_.contains(gap) ? std::nullopt : std::optional(gap);
+}
+
+/// Takes the names of positions: "Wide Middle Tele", "infinity close".
+bool PagePositions::take_names(const PageLine& line) {
+  if (line.numbers() > 0) return false;
+  std::vector<std::string> names;
+  for (const PageToken& token : line.tokens) {
+    const std::string word = lower(token.text);
+    const auto starts = [&](std::initializer_list<const char*> any) {
+      return std::ranges::any_of(any, [&](const char* a) { return word.starts_with(a); });
+    };
+    if (starts({"wide"}) || token.text == "W") names.emplace_back("wide");
+    if (starts({"middle", "intermediate", "mid"}) || token.text == "M") names.emplace_back("middle");
+    if (starts({"tele"}) || token.text == "T") names.emplace_back("tele");
+    if (starts({"infinit", "inf"})) names.emplace_back("infinity");
+    if (starts({"close", "near", "closest", "shortest"})) names.emplace_back("close");
+  }
+  if (names.size() < 2) return false;
+  if (names_.empty()) names_ = std::move(names);
+  return true;
+}
+
+/// Takes the names of columns, with at least one thickness: "f d5 d10 d16".
+bool PagePositions::take_columns(const PageLine& line) {
+  std::vector<std::string> found;
+  bool any_gap = false;
+  for (const PageToken& token : line.tokens) {
+    const auto name = quantity(token.text);
+    if (!name || token.text == "=") return false;
+    any_gap = any_gap || gaps_.contains(*name);
+    found.push_back(*name);
+  }
+  if (!any_gap || found.size() < 2) return false;
+  columns_ = std::move(found);
+  return true;
+}
+
+/// Takes a row below names of columns: a number per column, behind the name of the position.
+bool PagePositions::take_row(const PageLine& line) {
+  if (columns_.empty()) return false;
+  const std::size_t words = static_cast<std::size_t>(
+      std::ranges::find_if(line.tokens, [](const PageToken& t) { return t.is_number || is_plane_word(t.text); }) -
+      line.tokens.begin());
+  if (line.tokens.size() - words != columns_.size() || words > 3) return false;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    put(columns_[i], {line.number, columns_[i], {line.tokens[words + i].text}});
+  }
+  return true;
+}
+
+void PagePositions::put(const std::string& quantity, Values values) {
+  if (quantity.empty()) return;
+  for (std::string& text : values.numbers) {
+    if (is_plane_word(text)) text = "Infinity";
+    if (is_none(text)) text = "undefined";
+    if (text == "Infinity" || text == "undefined") continue;
+    if (!number(text))
+      in_.must_be(values.line, values.name, io_detail::in_quotes(text), "a number with a decimal point");
+  }
+  const auto [at, is_new] = values_.try_emplace(quantity, values);
+  if (is_new || at->second.numbers == values.numbers) return;
+  const bool gap = gaps_.contains(quantity) || quantity == "Bf" || quantity == "d0" || !columns_.empty();
+  auto& known = at->second.numbers;
+  const bool longer = values.numbers.size() > known.size() &&
+                      std::equal(known.begin(), known.end(), values.numbers.begin(),
+                                 [](const auto& a, const auto& b) { return number(a) == number(b); });
+  if (longer) return void(at->second = std::move(values));
+  if (gap || (known.size() > 1 && values.numbers.size() > 1)) {
+    known.insert(known.end(), values.numbers.begin(), values.numbers.end());
+  } else if (known.size() == 1 && values.numbers.size() > 1) {
+    at->second = std::move(values);
+  } else if (known.size() == 1) {
+    in_.must_be(values.line, values.name,
+                values.numbers.front() + ", and " + known.front() + " in line " + std::to_string(at->second.line),
+                "the same number");
+  }
+}
+
+bool PagePositions::take(const PageLine& line) {
+  if (take_names(line) || take_columns(line) || take_row(line)) return true;
+  const auto& t = line.tokens;
+  std::vector<std::pair<std::string, Values>> found;
+  for (std::size_t i = 0; i < t.size();) {
+    // The name is all words before the value, or the last words.
+    std::size_t end = i;
+    const auto is_value = [&](std::size_t at) {
+      if (at >= t.size()) return false;
+      return t[at].is_number || (at > i && (is_plane_word(t[at].text) || is_meant_as_number(t[at].text))) ||
+             (at > i && without_ratio(t[at]).is_number);
+    };
+    while (end < t.size() && t[end].text != "=" && !is_value(end) && !(end > i && is_none(t[end].text))) ++end;
+    std::string joined;
+    for (std::size_t k = i; k < end; ++k) joined += t[k].text;
+    std::optional<std::string> name = quantity(joined);
+    // "D 5 2.1 11.4" and "DD[5] = 2.1".
+    if (!name && end == i + 1 && is_one_of(t[i].text, "d dd") && end < t.size() && t[end].is_number) {
+      name = quantity(t[i].text + t[end].text);
+      joined += t[end].text;
+      if (name) ++end;
+    }
+    for (std::size_t k = i + 1; !name && k < end; ++k) {
+      joined.clear();
+      for (std::size_t m = k; m < end; ++m) joined += t[m].text;
+      name = quantity(joined);
+      if (name && !found.empty()) break;
+    }
+    if (end < t.size() && t[end].text == "=") ++end;
+    Values values{line.number, joined, {}};
+    while (end < t.size() && (is_value(end) || is_none(t[end].text))) {
+      values.numbers.push_back(without_ratio(t[end++]).text);
+    }
+    if (end == i) ++end;
+    i = end;
+    if (name && !values.numbers.empty()) found.emplace_back(*name, std::move(values));
+    // "f1 = 20.5" and other names are read over.
+  }
+  for (auto& [name, values] : found) put(name, std::move(values));
+  return !found.empty();
+}
+
+/// Adds a quantity that is a multiple of another.
+void PagePositions::scale(Positions& positions, const char* from, const char* to, double factor) {
+  const auto at = positions.variables.find(from);
+  if (at == positions.variables.end()) return;
+  Variable variable = std::move(at->second);
+  positions.variables.erase(at);
+  for (std::string& text : variable.values) {
+    if (const auto value = number(text)) text = to_text(factor * *value);
+  }
+  positions.variables.try_emplace(to, std::move(variable));
+}
+
+void PagePositions::apply(Positions& positions) {
+  std::size_t count = 1;
+  for (const auto& [name, values] : values_) count = std::max(count, values.numbers.size());
+  for (auto& [name, values] : values_) {
+    // A second block of positions may lack a quantity. A distance is stated for each position.
+    const std::size_t own = values.numbers.size();
+    const bool gap = gaps_.contains(name);
+    if (own != count && (gap || (own > 1 && count % own != 0))) {
+      in_.must_be(values.line, values.name, std::to_string(own) + " values",
+                  std::to_string(count) + ", one per position");
+    }
+    positions.variables.emplace(name, Variable{values.line, values.numbers, gaps_.contains(name)});
+  }
+  // An angle of view may be the half or the whole: the image height and the focal length tell.
+  const auto first = [&](const char* name) -> std::optional<double> {
+    const auto at = positions.variables.find(name);
+    return at == positions.variables.end() ? std::nullopt : number(at->second.values.front());
+  };
+  if (const auto angle = first("angle")) {
+    const auto height = first("half height"), f = first("Focal Length");
+    const auto off = [&](double half) {
+      return std::abs(std::log(std::tan(half * std::numbers::pi / 180) * *f / *height));
+    };
+    const bool half = height && f && *angle < 89 && off(*angle) < off(*angle / 2);
+    in_.warn(positions.variables.find("angle")->second.line, "angle of view",
+             half ? "is taken as the half angle, by image height and focal length" : "is taken as the whole angle");
+    scale(positions, "angle", half ? "half angle" : "Angle of View", 1);
+  }
+  scale(positions, "half angle", "Angle of View", 2);
+  scale(positions, "half height", "Image Height", 2);
+  if (names_.size() == count) {
+    std::map<std::string, int> used;
+    for (std::size_t i = 0; i < count; ++i) {
+      const int again = ++used[names_[i]];
+      positions.names[std::to_string(i)] = names_[i] + (again > 1 ? ' ' + std::to_string(again) : "");
+    }
+  }
+}
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "page_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+bool is_object(std::string_view word) { return lower(word).starts_with("obj"); }
+bool is_image(std::string_view word) { return is_one_of(word, "img ima image im"); }
+
+/// True for the columns that a row of air leaves out.
+bool is_of_glass(Column kind) {
+  return kind == Column::index || kind == Column::abbe || kind == Column::glass || kind == Column::catalogue ||
+         kind == Column::left_out;
+}
+
+bool is_aperture(Column kind) {
+  return kind == Column::semi_diameter || kind == Column::diameter || kind == Column::aperture;
+}
+
+/// The cells of a line between separators, as tokens; an empty cell is "-".
+std::vector<PageToken> divided(std::string_view text, char separator) {
+  std::vector<PageToken> cells;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(separator, from), text.size());
+    const std::string_view cell = trimmed(text.substr(from, to - from));
+    cells.push_back({cell.empty() ? "-" : std::string(cell), number(cell).has_value()});
+    from = to + 1;
+  }
+  return cells;
+}
+
+/// The label of a row in front of a bracket, and the bracket: "13(St)".
+std::pair<std::optional<int>, std::string_view> label_and_mark(std::string_view word) {
+  const std::size_t bracket = std::min(word.find('('), word.size());
+  if (const auto label = label_of(word)) return {label, mark_of(word)};
+  return {bracket > 0 ? label_of(word.substr(0, bracket)) : std::nullopt, word.substr(bracket)};
+}
+
+/// A mark of the stop or of an asphere: "(aperture stop)", "STO", "*", "(ASP)"; also other text in brackets.
+struct Mark {
+  bool is_mark = false, stop = false, asphere = false;
+};
+
+Mark mark_in(std::string_view word) {
+  const bool in_brackets = word.size() > 2 && word.starts_with('(') && word.ends_with(')');
+  const std::string inner = lower(in_brackets ? word.substr(1, word.size() - 2) : word);
+  const auto contains = [&](std::string_view part) { return inner.find(part) != std::string::npos; };
+  Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || is_one_of(word, "fs fc cg st sp")};
+  if (!mark.is_mark || contains("variable") || contains("flare") || !variable_name(inner).empty()) {
+    mark.is_mark = mark.is_mark && contains("flare");
+    return mark;
+  }
+  mark.asphere = contains("asp") || contains("*");
+  mark.stop = !mark.asphere && (contains("stop") || contains("sto") || contains("aperture") || contains("diaphragm") ||
+                                contains("iris") || is_one_of(inner, "ast as s st sp"));
+  return mark;
+}
+
+}  // namespace
+
+std::string variable_name(std::string_view word) {
+  std::string name;
+  for (const char c : word) {
+    if (std::string_view("()[]' .").find(c) == std::string_view::npos) name += lower(c);
+  }
+  if (is_one_of(name, "bf bfl fb b.f.")) return "Bf";
+  const std::size_t letters = name.starts_with("dd") ? 2 : name.starts_with('d') ? 1 : 0;
+  const bool digits = letters > 0 && name.size() > letters && name.size() <= letters + 4 &&
+                      name.find_first_not_of("0123456789", letters) == std::string::npos;
+  return digits ? 'd' + name.substr(letters) : std::string();
+}
+
+std::vector<TableColumn> surface_columns(const PageLine& line) {
+  // Lines with numbers or values are no heads, unless the head names its columns' lines: "n(587.6)".
+  if (line.numbers() > 1 || line.tokens.size() < 3) return {};
+  std::vector<TableColumn> best;
+  for (const char separator : {'\t', '|', ';', ',', ' '}) {
+    std::vector<std::string_view> heads;
+    std::vector<PageToken> cells = separator == ' ' ? line.tokens : divided(line.text, separator);
+    for (const PageToken& cell : cells) {
+      if (cell.text != "-" && cell.text != "=") heads.push_back(cell.text);
+    }
+    if (separator != ' ' && heads.size() < 3) continue;
+    std::vector<TableColumn> columns = columns_of(heads, separator == ' ');
+    const auto has = [&](std::initializer_list<Column> kinds) {
+      return std::ranges::any_of(columns, [&](const TableColumn& c) { return std::ranges::count(kinds, c.kind) > 0; });
+    };
+    const bool surfaces = has({Column::radius, Column::curvature}) && has({Column::thickness, Column::gap_before}) &&
+                          has({Column::index, Column::glass});
+    if (surfaces) return columns;
+  }
+  return best;
+}
+
+std::size_t PageTable::find(Column kind) const {
+  return static_cast<std::size_t>(std::ranges::find(columns_, kind, &TableColumn::kind) - columns_.begin());
+}
+
+PageRow* PageTable::find(int label) {
+  const auto found = std::ranges::find(rows_, std::optional(label), &PageRow::label);
+  return found == rows_.end() ? nullptr : &*found;
+}
+
+void PageTable::set_head(const PageLine& line, std::vector<TableColumn> columns) {
+  head_line_ = line.number;
+  labelled_ = columns.front().kind == Column::number;
+  std::erase_if(columns, [](const TableColumn& c) { return c.kind == Column::number; });
+  columns_ = std::move(columns);
+  separator_ = ' ';
+  for (const char separator : {'\t', '|', ';', ','}) {
+    const auto cells = static_cast<std::size_t>(std::ranges::count(line.text, separator)) + 1;
+    if (cells >= columns_.size()) {
+      separator_ = separator;
+      break;
+    }
+  }
+}
+
+/// The cells behind the label.
+std::vector<PageToken> PageTable::cells_of(const PageLine& line, std::size_t from) const {
+  if (separator_ == ' ') return {line.tokens.begin() + static_cast<std::ptrdiff_t>(from), line.tokens.end()};
+  std::vector<PageToken> cells = divided(trimmed(line.text), separator_);
+  if (separator_ == '|') {
+    if (!cells.empty() && cells.front().text == "-") cells.erase(cells.begin());
+    if (cells.size() > columns_.size() + (from > 0) && cells.back().text == "-") cells.pop_back();
+  }
+  if (from > 0) cells.erase(cells.begin());
+  return cells;
+}
+
+/// A row without the marks in front of and behind its numbers.
+PageRow PageTable::take_marks(const PageLine& line, std::size_t from) const {
+  PageRow row{.line = line.number};
+  std::vector<PageToken> cells = cells_of(line, from);
+  const auto take = [&](std::size_t at) {
+    const Mark mark = mark_in(cells[at].text);
+    const bool plane_follows = at + 1 < cells.size() && is_plane_word(cells[at + 1].text);
+    const bool short_s = same(cells[at].text, "s") && plane_follows;
+    if (!mark.is_mark && !short_s) return false;
+    if (mark.stop || short_s) row.stop = "stop";
+    row.asphere = row.asphere || mark.asphere;
+    cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(at));
+    return true;
+  };
+  while (!cells.empty() && take(0)) {
+  }
+  const bool words_last =
+      !columns_.empty() && (columns_.back().kind == Column::comment || columns_.back().kind == Column::stop);
+  while (cells.size() > 1 && !words_last && take(cells.size() - 1)) {
+  }
+  // "plano stop 9.0", "inf (STOP) 1.5".
+  for (std::size_t at = cells.size(); !words_last && cells.size() > 2 && at-- > 1;) {
+    const Mark mark = mark_in(cells[at].text);
+    if ((mark.stop || mark.asphere) && cells[at].text.size() > 1) take(at);
+  }
+  row.cells = std::move(cells);
+  return row;
+}
+
+bool PageTable::take_row(const PageLine& whole) {
+  if (columns_.empty() || named_) return false;
+  PageLine line = whole;
+  // The lens or the group in front of the number: "L1 1 52.1", "G2 5 -20.3".
+  const std::string& first = line.tokens[0].text;
+  const bool group = (first[0] == 'L' || first[0] == 'G') && first.size() > 1 && label_of(first.substr(1));
+  if (group && labelled_ && separator_ == ' ' && line.tokens.size() > 2 && label_of(line.tokens[1].text))
+    line.tokens.erase(line.tokens.begin());
+  const auto& tokens = line.tokens;
+  if (std::ranges::any_of(tokens, [](const PageToken& t) { return t.text == "="; })) return false;
+  // The label, with an asterisk in front or behind: "* 5", "5*", "*5)".
+  const std::size_t star = tokens.size() > 1 && tokens[0].text == "*" ? 1 : 0;
+  const auto [label, mark] = label_and_mark(tokens[star].text);
+  if (rows_.empty() && label && *label <= 1 && tokens.size() > columns_.size()) labelled_ = true;
+  const bool unnumbered = mark_in(tokens[0].text).stop || is_object(tokens[0].text) || is_image(tokens[0].text);
+  if (labelled_ && !unnumbered) {
+    if (!label || tokens.size() < star + 2) return false;
+    const auto last =
+        std::ranges::find_if(rows_.rbegin(), rows_.rend(), [](const PageRow& r) { return r.label.has_value(); });
+    const int next = last == rows_.rend() ? *label : *last->label + 1;
+    const bool skipped = !rows_.empty() && !rows_.back().label && *label == next + 1;
+    if (*label != next && !skipped) return false;
+    if (last == rows_.rend() && *label > 1) return false;
+  } else if (!unnumbered && !is_plane_word(tokens[0].text) && !tokens[0].is_number &&
+             !is_meant_as_number(tokens[0].text)) {
+    return false;
+  }
+  std::size_t from = labelled_ && !unnumbered ? star + 1 : 0;
+  if (is_object(tokens[0].text) || is_image(tokens[0].text)) {
+    // "Object plane inf (d0)" and "Image plane inf" are no surfaces.
+    return line.numbers() < 3;
+  }
+  PageRow row = take_marks(line, from);
+  // The object: "0 inf inf", "0 inf D0".
+  const auto is_far = [](const PageToken& t) { return is_plane_word(t.text) || variable_name(t.text) == "d0"; };
+  if (rows_.empty() && label == 0 && row.cells.size() > 1 && is_plane_word(row.cells[0].text) && is_far(row.cells[1]))
+    return true;
+  if (labelled_ && !unnumbered) {
+    row.label = label;
+    const Mark own = mark_in(mark);
+    if (own.stop || same(mark, "s")) row.stop = "stop";
+    row.asphere = row.asphere || own.asphere || star > 0 || tokens[0].text.find('*') != std::string::npos;
+  }
+  const auto is_data = [](const PageToken& t) {
+    return t.is_number || is_plane_word(t.text) || is_meant_as_number(t.text);
+  };
+  if (std::ranges::none_of(row.cells, is_data)) return false;
+  name_gap(row);
+  rows_.push_back(std::move(row));
+  return true;
+}
+
+bool PageTable::is_other_row(const PageLine& line) const {
+  if (rows_.empty() || line.tokens.size() < 2) return false;
+  const auto is_cell = [](const PageToken& t) {
+    return is_meant_as_number(t.text) || t.is_number || is_plane_word(t.text) || is_none(t.text) ||
+           mark_in(t.text).is_mark || !variable_name(t.text).empty();
+  };
+  if (!labelled_) return !named_ && line.tokens.size() >= columns_.size() && std::ranges::all_of(line.tokens, is_cell);
+  const auto label = label_of(line.tokens[0].text);
+  return label && rows_.back().label && *label > *rows_.back().label && !line.tokens[1].text.ends_with('.') &&
+         std::all_of(line.tokens.begin() + 1, line.tokens.end(), is_cell);
+}
+
+bool PageTable::is_printed() const {
+  const auto printed = [&](const PageRow& row) {
+    const bool short_air = labelled_ && separator_ == ' ' && row.cells.size() + 2 <= columns_.size() &&
+                           is_aperture(columns_.back().kind) && row.cells.size() > 2;
+    return short_air || (&row != &rows_.back() && !row.variable.empty());
+  };
+  return std::ranges::any_of(rows_, printed);
+}
+
+/// Takes the name of a thickness that varies: "(variable)", "D5", "d 5", "2.10 (variable)".
+void PageTable::name_gap(PageRow& row) const {
+  const std::string own = row.label ? 'd' + std::to_string(*row.label) : std::string();
+  auto& cells = row.cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool apart = i + 1 < cells.size() && is_one_of(cells[i].text, "d dd") && cells[i + 1].is_number;
+    std::string name = variable_name(apart ? cells[i].text + cells[i + 1].text : cells[i].text);
+    const std::string all = lower(cells[i].text);
+    if (name.empty() && (all.find("variable") != std::string::npos || all == "var" || all == "var.")) {
+      const std::string before = all.substr(0, all.find('('));
+      name = variable_name(before).empty() ? own : variable_name(before);
+    }
+    if (name.empty() || cells[i].is_number) continue;
+    row.variable = name;
+    if (apart) cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    cells[i] = {"(variable)"};
+    const bool behind_number = i == find(Column::thickness) + 1 && cells[i - 1].is_number;
+    if (behind_number && all.find("variable") != std::string::npos) {
+      cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(i));
+      cells[i - 1] = {"(variable)"};
+    }
+    return;
+  }
+}
+
+bool PageTable::take_named(const PageLine& line) {
+  const auto& t = line.tokens;
+  bool found = false;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (t[i].text != "=" || i == 0 || i + 1 >= t.size()) continue;
+    // "r1 = 5" or "r 1 = 5"; primes are left out.
+    std::string name = lower(t[i - 1].text);
+    std::erase_if(name, [](char c) { return std::string_view("'*()").find(c) != std::string_view::npos; });
+    if (t[i - 1].is_number && i >= 2) name = lower(t[i - 2].text) + name;
+    // "nD = 1.65 V = 58" may lack numbers.
+    const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
+    const bool no_number = digits == name.size() && !is_one_of(name, "n nd v vd \u03bd \u03bdd");
+    if (digits == 0 || no_number) continue;
+    if (name.find_first_not_of("0123456789", digits) != std::string::npos) continue;
+    const std::string kind = name.substr(0, digits);
+    const std::string& value = t[i + 1].text;
+    const bool is_value = t[i + 1].is_number || is_plane_word(value) || is_meant_as_number(value);
+    if (is_one_of(kind, "r radius") && is_value) {
+      if (rows_.empty()) {
+        named_ = true;
+        head_line_ = line.number;
+        columns_ = columns_of(std::vector<std::string_view>{"r", "d", "nd", "vd"}, false);
+      }
+      if (!named_) return false;
+      PageRow row{.line = line.number, .label = label_of(name.substr(digits))};
+      row.cells = {t[i + 1], {"-"}, {"-"}, {"-"}};
+      for (const PageToken& token : t) row.asphere = row.asphere || (mark_in(token.text).asphere && &token < &t[i]);
+      rows_.push_back(std::move(row));
+      found = true;
+    } else if (named_ && !rows_.empty() && is_one_of(kind, "d t l n nd v vd \u03bd \u03bdd s e")) {
+      const bool gap = is_one_of(kind, "d t l s e");
+      PageRow& row = rows_.back();
+      PageToken& cell = row.cells[gap ? 1 : kind[0] == 'n' ? 2 : 3];
+      if (cell.text != "-") return found;  // a second value: a table of positions
+      cell = t[i + 1];
+      if (gap && !t[i + 1].is_number && !is_meant_as_number(value)) {
+        const bool varies = lower(value).find("variable") != std::string::npos;
+        row.variable = varies ? 'd' + name.substr(digits) : variable_name(value);
+        if (!row.variable.empty()) cell = {"(variable)"};
+      }
+      found = true;
+    }
+  }
+  if (!found) return false;
+  for (const PageToken& token : t) {
+    const Mark mark = mark_in(token.text);
+    if (mark.stop && token.text.size() > 1) rows_.back().stop = "stop";
+    // "1.6228/56.9" is n/v.
+    const std::size_t slash = token.text.find('/');
+    const auto pair = slash == std::string::npos
+                          ? std::vector<PageToken>()
+                          : tokens_of(token.text.substr(0, slash) + ' ' + token.text.substr(slash + 1),
+                                      token.text.find(',') != std::string::npos);
+    if (pair.size() == 2 && pair[0].is_number && pair[1].is_number)
+      rows_.back().cells[2] = pair[0], rows_.back().cells[3] = pair[1];
+  }
+  return true;
+}
+
+/// True if the cells of a row can stand in these columns.
+bool PageTable::fits(const PageRow& row, const std::vector<std::size_t>& columns, bool last) const {
+  if (row.cells.size() != columns.size()) return false;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const PageToken& cell = row.cells[i];
+    const Column kind = columns_[columns[i]].kind;
+    const auto value = number(cell.text);
+    if (is_none(cell.text)) continue;
+    switch (kind) {
+      case Column::radius:
+      case Column::curvature:
+        if (!value && !is_plane_word(cell.text)) return false;
+        break;
+      case Column::thickness:
+      case Column::gap_before:
+        if (!value && cell.text != "(variable)" && !(last && is_plane_word(cell.text))) return false;
+        break;
+      case Column::index:
+        if (!same(cell.text, "air") &&
+            !(value && (*value == 0 || std::abs(*value - 1) < 1e-3 || (*value >= 1.3 && *value <= 2.7))))
+          return false;
+        break;
+      case Column::abbe:
+        if (!value || (*value != 0 && !(*value >= 8 && *value <= 120))) return false;
+        break;
+      case Column::glass:
+        if (value) return false;
+        break;
+      case Column::semi_diameter:
+      case Column::diameter:
+      case Column::aperture:
+        if (!value || *value < 0) return false;
+        break;
+      case Column::conic:
+      case Column::term:
+        if (!value) return false;
+        break;
+      default: break;
+    }
+  }
+  return true;
+}
+
+void PageTable::complete(PageRow& row, bool last, const Import& in) {
+  using List = std::vector<std::size_t>;
+  const auto columns_if = [&](auto wanted) {
+    List list;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (wanted(columns_[i].kind)) list.push_back(i);
+    }
+    return list;
+  };
+  const auto gap = [](Column c) { return c == Column::thickness || c == Column::gap_before; };
+  const auto of_surface = [&](Column c) { return !is_of_glass(c); };
+  std::vector<List> forms{columns_if([](Column) { return true; }), columns_if(of_surface),
+                          columns_if([&](Column c) { return of_surface(c) || c == Column::index; }),
+                          columns_if([&](Column c) { return of_surface(c) || c == Column::glass; }),
+                          columns_if([&](Column c) { return of_surface(c) && !is_aperture(c); })};
+  if (last) forms.push_back(columns_if([&](Column c) { return of_surface(c) && !gap(c); }));
+  if (last) forms.push_back(columns_if([&](Column c) { return of_surface(c) && !gap(c) && !is_aperture(c); }));
+  const std::size_t radius = std::min(find(Column::radius), find(Column::curvature));
+  const auto fill = [&](const PageRow& from) {
+    const List* found = nullptr;
+    for (const List& form : forms) {
+      if (!fits(from, form, last) || (found && *found == form)) continue;
+      const bool air_index = form == forms[2] && form != forms[0];
+      if (air_index && std::ranges::none_of(from.cells, [](const PageToken& c) {
+            return std::abs(number(c.text).value_or(9) - 1) < 1e-3 || same(c.text, "air");
+          }))
+        continue;
+      if (found) continue;
+      found = &form;
+    }
+    if (!found) return false;
+    std::vector<PageToken> cells(columns_.size(), PageToken{"-"});
+    for (std::size_t i = 0; i < found->size(); ++i) cells[(*found)[i]] = from.cells[i];
+    row.cells = std::move(cells);
+    return true;
+  };
+  if (fill(row)) return;
+  // The mark of the stop may stand in place of the radius: "7 STO 1.5".
+  if (PageRow plane = row; !row.stop.empty() && radius < columns_.size()) {
+    plane.cells.insert(plane.cells.begin() + static_cast<std::ptrdiff_t>(std::min(radius, plane.cells.size())),
+                       {"inf"});
+    if (fill(plane)) return;
+  }
+  std::string names, found;
+  for (const TableColumn& column : columns_) append(names, ", ", column.name);
+  for (const PageToken& cell : row.cells) append(found, " ", cell.text);
+  const bool whole = row.cells.size() == columns_.size();
+  for (std::size_t i = 0; whole && i < columns_.size(); ++i) {
+    if (fits({.cells = {row.cells[i]}}, {i}, last)) continue;
+    in.must_be(row.line, columns_[i].name, io_detail::in_quotes(row.cells[i].text),
+               columns_[i].kind == Column::index  ? "an index, 1.3 to 2.7"
+               : columns_[i].kind == Column::abbe ? "a V-number, 8 to 120"
+                                                  : "a number with a decimal point");
+  }
+  for (const PageToken& cell : row.cells) {
+    if (!cell.is_number && is_meant_as_number(cell.text)) {
+      in.must_be(row.line, "cell", io_detail::in_quotes(cell.text), "a number with a decimal point");
+    }
+  }
+  in.must_be(row.line, "row", io_detail::in_quotes(beginning(found, 80)),
+             "a cell per column: " + names + "; air has neither index nor V-number");
+}
+
+void PageTable::complete(const Import& in) {
+  for (PageRow& row : rows_) {
+    const std::optional<int> before = &row == &rows_.front() ? std::optional(0) : (&row - 1)->label;
+    if (named_ && row.label != before.value_or(0) + 1) {
+      in.must_be(row.line, "r", row.label ? std::to_string(*row.label) : "without a number",
+                 "the radius that follows number " + std::to_string(before.value_or(0)));
+    }
+    complete(row, &row == &rows_.back(), in);
+  }
+  // A number that is missing in a row could pass for another, or make air of glass.
+  const auto states = [&](const PageRow& row, auto kinds) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (kinds(columns_[i].kind) && !is_none(row.cells[i].text) && number(row.cells[i].text) != 0.0) return true;
+    }
+    return false;
+  };
+  const auto has_index = [&](const PageRow& row) {
+    return states(row, [](Column c) { return c == Column::index || c == Column::glass; });
+  };
+  const auto is_glass = [&](const PageRow& row) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].kind == Column::index && number(row.cells[i].text).value_or(0) > 1.1) return true;
+    }
+    return false;
+  };
+  const auto has_abbe = [&](const PageRow& row) { return states(row, [](Column c) { return c == Column::abbe; }); };
+  const auto has_aperture = [&](const PageRow& row) { return states(row, is_aperture); };
+  const bool abbe = std::ranges::any_of(rows_, has_abbe);
+  const bool apertures = 2 * std::ranges::count_if(rows_, has_aperture) > std::ssize(rows_) &&
+                         std::ranges::any_of(columns_, [](const TableColumn& c) { return is_aperture(c.kind); });
+  for (const PageRow& row : rows_) {
+    if (has_abbe(row) && !has_index(row)) in.must_be(row.line, "index", "missing", "stated before the V-number");
+    if (abbe && is_glass(row) && !has_abbe(row)) in.must_be(row.line, "V-number", "missing", "stated as in other rows");
+    if (apertures && !has_aperture(row)) in.must_be(row.line, "aperture", "missing", "stated as in other rows");
+  }
+}
+
+std::vector<TableLine> PageTable::lines() const {
+  std::vector<TableLine> lines{{head_line_, {"No"}, {}}};
+  for (const TableColumn& column : columns_) lines[0].cells.push_back(column.name);
+  for (const PageRow& row : rows_) {
+    TableLine& line = lines.emplace_back(TableLine{row.line, {row.stop.empty() ? "-" : "stop"}, {}});
+    const auto has_medium = [&](std::size_t i) {
+      return (columns_[i].kind == Column::index || columns_[i].kind == Column::glass) && !is_none(row.cells[i].text);
+    };
+    bool air = true;
+    for (std::size_t i = 0; i < columns_.size(); ++i) air = air && !has_medium(i);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const std::string& cell = row.cells[i].text;
+      const bool index = columns_[i].kind == Column::index;
+      line.cells.push_back(cell == "(variable)" ? "0" : air && index ? "1" : std::string_view(cell));
+    }
+  }
+  return lines;
+}
+
+}  // namespace petzval::formats_detail
