@@ -98,13 +98,22 @@ Outline outline_of(const Lens& lens, const ScenePoint& light, Wavelength wavelen
 
 /// Moves the corners that lie between two directions of the search to the intersection of the adjacent edges.
 void sharpen(Chain& chain) {
-  const auto edge = [&](std::size_t i) { return chain[i + 1].cosines - chain[i].cosines; };
-  for (std::size_t i = 1; i + 2 < chain.size(); ++i) {
-    const double before = turn(edge(i - 1), edge(i)), both = turn(edge(i - 1), edge(i + 1));
-    if (std::abs(both) < radians(5.0) || before * (both - before) < 0) continue;
-    const double along = cross(edge(i), edge(i + 1)) / cross(edge(i - 1), edge(i + 1));
-    chain[i].cosines += edge(i - 1) * along;
+  const std::size_t count = chain.size() - 1;
+  const bool closed = chain.front().cosines == chain.back().cosines;
+  const auto edge = [&](std::size_t i) { return chain[i % count + 1].cosines - chain[i % count].cosines; };
+  // The turn from the edge before to the edge behind an edge; largest at the edge that cuts a corner.
+  const auto both = [&](std::size_t i) {
+    return closed || (i > 0 && i + 1 < count) ? turn(edge(i + count - 1), edge(i + 1)) : 0;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const double before = turn(edge(i + count - 1), edge(i)), all = both(i),
+                 others = std::max(std::abs(both(i + count - 1)), std::abs(both(i + 1)));
+    if (std::abs(all) < std::max(others, radians(5.0)) || before * (all - before) < 0) continue;
+    const double along = cross(edge(i), edge(i + 1)) / cross(edge(i + count - 1), edge(i + 1));
+    chain[i].cosines += edge(i + count - 1) * along;
+    if (i == 0) chain.back() = chain.front();
     chain[i + 1] = chain[i];
+    if (closed && i + 1 == count) chain.front() = chain.back();
     ++i;
   }
 }

@@ -34,14 +34,14 @@ FieldPoint star(double degrees) {
 }
 
 /// The starburst of a star about a film point, as fractions of the light of the image.
-std::vector<float> starburst(const Lens& lens, double degrees, const Vec2<double>& centre) {
+std::vector<float> starburst(const Lens& lens, const FieldPoint& field, const Vec2<double>& centre) {
   Film film;
   film.columns = film.rows = side;
   film.width_mm = film.height_mm = 2 * half_mm;
   film.shift_x_mm = centre.x, film.shift_y_mm = centre.y;
   const std::array wavelengths{Wavelength{}};
   std::vector<float> result(static_cast<std::size_t>(side * side));
-  const ScenePoint light = scene_point(lens, star(degrees));
+  const ScenePoint light = scene_point(lens, field);
   const GhostOptions options{.max_pairs = 0, .starburst = true};
   add_ghosts(lens, light, film, wavelengths, result, options);
   const double power = ghost_audit(lens, light, options, 4096).image * ghost_pairs(lens, light, options).entering_mm2;
@@ -73,7 +73,7 @@ double sum(const std::array<double, 12>& of) {
 TEST(Starburst, OfARoundPupilHasTheLightOfAirysRings) {
   for (const double nm : {486.1, 656.3}) {
     const Lens lens = double_gauss(8, 0, nm);
-    const auto picture = starburst(lens, 0, {0, 0});
+    const auto picture = starburst(lens, star(0), {0, 0});
     // The mean of J0^2 + J1^2 far from the centre.
     const double expected = 2 * nm * 1e-6 * real_f_number(lens) / std::pow(std::numbers::pi, 2) * (1 / 0.1 - 1 / 0.2);
     EXPECT_NEAR(sum(sectors([&](std::size_t i) { return picture[i]; }, side)) / expected, 1, 0.03) << nm;
@@ -84,7 +84,7 @@ TEST(Starburst, OfBladesIsTheMeanOfTheFourierTransformOfThePupil) {
   for (const double degrees : {0.0, 15.0}) {
     const Lens lens = double_gauss(11, degrees > 0 ? 8 : 6);
     const DiffractionPsf psf = diffraction_psf(lens, star(degrees), {.pixels = 1024, .half_width_mm = 2 * half_mm});
-    const auto picture = starburst(lens, degrees, psf.centre);
+    const auto picture = starburst(lens, star(degrees), psf.centre);
     double power = 0;
     for (const double value : psf.irradiance) power += value;
     // The middle quarter, in which the transform loses little light between its samples.
@@ -93,6 +93,25 @@ TEST(Starburst, OfBladesIsTheMeanOfTheFourierTransformOfThePupil) {
     const auto found = sectors([&](std::size_t i) { return picture[i]; }, side);
     EXPECT_NEAR(sum(found) / sum(expected), 1, 0.08);
     for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(found[k], expected[k], 0.2 * sum(expected) / 12) << k;
+  }
+}
+
+// An error at a corner of the pupil sends light out of the spikes, whose half width is 2 degrees at 0.2 mm.
+TEST(Starburst, OfSixBladesLiesInSixSpikes) {
+  const Lens lens = double_gauss(11, 6);
+  for (int azimuth = 5; azimuth < 360; azimuth += 90) {
+    FieldPoint field = star(7);
+    field.azimuth_rad = radians(azimuth);
+    const auto picture = starburst(lens, field, diffraction_psf(lens, field, {.pixels = 64}).centre);
+    double all = 0, outside = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const double x = i % side + 0.5 - side / 2, y = side / 2 - (i / side + 0.5);
+      if (std::hypot(x, y) * 2 * half_mm < 0.2 * side) continue;
+      const float light = picture[static_cast<std::size_t>(i)];
+      all += light;
+      if (std::abs(std::remainder(degrees(std::atan2(y, x)), 60)) > 4) outside += light;
+    }
+    EXPECT_LT(outside, 1e-3 * all) << azimuth;
   }
 }
 
