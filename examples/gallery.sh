@@ -415,6 +415,20 @@ END
 0.008 % of the light: the picture is 30 times as bright as it would be beside the first." <<END
 $sun --coatings mgf2 --out ghosts/mgf2
 END
+  picture ghosts/starburst/ghosts.png "Starburst" "The sun nearer to the axis, at f/11: the six edges of the iris diffract six spikes. The starburst has
+16 % of the light of the sun's image, most of it within one pixel and 0.12 % farther than 1 mm away. The ghosts in the picture have 0.07 %." <<END
+petzval ghosts double_gauss_100mm_f2_28deg --light 6,3.5 --f-number 11 --blades 6 --coatings mgf2 --wavelengths visible --starburst --size 600x400 \\
+  --out ghosts/starburst
+END
+  street="petzval render double_gauss_52mm_f1.8 --scene input/night_street.json --focus 13m --f-number 5.6 --blades 6 --from entrance_pupil --size 600x400 --spp 64"
+  picture ghosts/street/picture.png "A street without ghosts" "The lamps are up to 900 times as bright as white." <<END
+$street --out ghosts/street
+END
+  picture ghosts/lamps/picture.png "The street with ghosts" "The same picture with the ghosts of 32 points of lamps and windows. They add 3.5 % to its light;
+with magnesium fluoride on each surface to air, 0.04 %." <<END
+cp -r ghosts/street/. ghosts/lamps
+$street --ghosts 32 --resume --out ghosts/lamps
+END
 }
 
 pictures() {
