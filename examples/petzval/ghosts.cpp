@@ -92,12 +92,15 @@ Light light_of(const Options& options, const petzval::Camera& camera) {
   std::vector<std::string> parts;
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
-  if (parts.size() < 2 || parts.size() > 3) throw Error("--light = \"" + text.substr(0, 60) + "\"; must be " + rule);
+  const bool two_or_three = (parts.size() == 2 || parts.size() == 3) && !text.ends_with(',');
+  if (!two_or_three || parts[0].ends_with("px") != parts[1].ends_with("px")) {
+    throw Error("--light = \"" + text.substr(0, 60) + "\"; must be " + rule);
+  }
   Light light;
   if (parts.size() == 3) light.distance_mm = examples::parse_length("--light", parts[2], examples::positive_length);
   const petzval::Lens& lens = camera.lens();
   const petzval::DistanceOrigin origin = options.setup.focus.origin;
-  const bool pixels = parts[0].ends_with("px") && parts[1].ends_with("px");
+  const bool pixels = parts[0].ends_with("px");
   std::array<double, 2> at{};
   for (std::size_t i = 0; i < 2; ++i) {
     if (pixels) parts[i].resize(parts[i].size() - 2);
