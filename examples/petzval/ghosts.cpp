@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -218,7 +219,9 @@ int commands::ghosts(int argc, char** argv) {
     petzval::GhostOptions ghost{.film_reflectance = options.film_reflectance, .threads = examples::threads()};
     if (options.model == "paraxial") ghost.model = petzval::GhostModel::paraxial;
     petzval::Ghosts ghosts = petzval::ghost_pairs(lens, light.point, ghost);
-    if (!coated) examples::note(lens.name() + ": the file states no coatings; all surfaces are uncoated");
+    if (!coated && !petzval::uncoated_surfaces(lens).empty()) {
+      examples::note(lens.name() + ": the file states no coatings; all surfaces are uncoated");
+    }
     if (static_cast<double>(ghosts.pairs.size()) > most) ghosts.pairs.resize(static_cast<std::size_t>(most));
     if (ghosts.left_out > 0) {
       examples::note(std::to_string(ghosts.left_out) + " pairs are left out; they hold at most " +

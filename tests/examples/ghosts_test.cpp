@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/image/image.hpp"
@@ -78,6 +79,15 @@ TEST_F(GhostsProgram, CoatingsAndThreads) {
   const json coated = ghosts({"--light", "5,4", "--coatings", "mgf2"}, "coated");
   EXPECT_LT(coated["audit"]["ghosts"].get<double>(), plain["audit"]["ghosts"].get<double>() / 5);
   EXPECT_GT(coated["audit"]["image"], plain["audit"]["image"]);
+}
+
+TEST_F(GhostsProgram, MissingCoatingsAreNotedOnlyIfASurfaceRefracts) {
+  for (const auto& [name, refracts] : {std::pair{"mirror_newton_200mm_f8", false}, {"cooke_triplet_50mm_f5", true}}) {
+    const Outcome outcome =
+        run("ghosts", {name, "--light", "0,1", "--wavelengths", "d", "--size", "8", "--out", path("out")});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("coating") != std::string::npos, refracts) << outcome.err;
+  }
 }
 
 // A pixel of a picture, far away, is a light like that of petzval ghosts.
