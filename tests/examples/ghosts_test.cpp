@@ -36,7 +36,7 @@ class GhostsProgram : public Programs {
 TEST_F(GhostsProgram, PictureHasTheEnergyOfThePairs) {
   // At f/11 the ghosts of a light near the axis lie on the film, except the widest.
   const json report = ghosts({"--light", "0,4", "--f-number", "11", "--film", "36x24"});
-  EXPECT_NEAR(report["audit"]["sum"], 1, 0.005);
+  EXPECT_NEAR(report["audit"]["sum"], 1, 0.002);
   EXPECT_EQ(report["light"]["y_deg"], 4);
   double all = 0, within = 0;
   for (const json& pair : report["pairs"]) {
