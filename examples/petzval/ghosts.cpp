@@ -224,8 +224,9 @@ int commands::ghosts(int argc, char** argv) {
     }
     if (static_cast<double>(ghosts.pairs.size()) > most) ghosts.pairs.resize(static_cast<std::size_t>(most));
     if (ghosts.left_out > 0) {
-      examples::note(std::to_string(ghosts.left_out) + " pairs are left out; they hold at most " +
-                     number(ghosts.left_out_energy, 3) + " of the light");
+      const std::string held =
+          ghosts.left_out_energy < 1 ? "at most " + number(ghosts.left_out_energy, 3) : "an unknown part";
+      examples::note(std::to_string(ghosts.left_out) + " pairs are left out; they hold " + held + " of the light");
     }
     const petzval::GhostAudit audit = petzval::ghost_audit(lens, light.point, ghost);
 

@@ -131,7 +131,7 @@ struct GhostAudit {
 ///              surfaces, some reflected branches are chosen at random
 /// @throws Error as ghost_pairs()
 ///
-/// Accuracy: sum within 0.002 of 1 (tests/ghosts).
+/// Accuracy: sum within 0.002 of 1 for every shipped lens (tests/ghosts); smaller if pairs are left out.
 PETZVAL_API GhostAudit ghost_audit(const Lens& lens, const ScenePoint& light, const GhostOptions& options = {},
                                    std::size_t rays = 512);
 
