@@ -12,14 +12,15 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::string_view letters = "abcdefghij";
+constexpr std::string_view letters = "ABCDEFGHIJ";
+constexpr std::string_view ordinals = "zeroth first second third fourth fifth sixth seventh eighth ninth tenth";
 
 /// The text without blanks and brackets of all kinds but "(1+k)", in lower case, with "kappa" for the Greek letter.
 std::string plain(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text.substr(i).starts_with("\u03ba")) {
-      result += 'k';
+    if (text.substr(i).starts_with("\u03ba") || text.substr(i).starts_with("\u03b1")) {
+      result += text.substr(i).starts_with("\u03ba") ? 'k' : 'a';
       ++i;
     } else if (std::string_view(" \t*\"'[]{}").find(text[i]) == std::string_view::npos) {
       result += lower(text[i]);
@@ -30,8 +31,11 @@ std::string plain(std::string_view text) {
 
 /// The number of a surface in "2", "2nd", "S2", "r3", "*5".
 std::optional<int> surface_number(std::string_view word) {
-  for (const std::string_view ending : {"st", "nd", "rd", "th"}) {
-    if (word.size() > 2 && lower(word).ends_with(ending)) word.remove_suffix(2);
+  const auto names = words(ordinals);
+  const auto ordinal = std::ranges::find_if(names, [&](std::string_view name) { return same(name, word); });
+  if (ordinal != names.end()) return static_cast<int>(ordinal - names.begin());
+  for (const std::string_view ending : {"-th", "st", "nd", "rd", "th"}) {
+    if (word.size() > 2 && lower(word).ends_with(ending)) word.remove_suffix(ending.size());
   }
   if (word.size() > 3 && lower(word).starts_with("no.")) word.remove_prefix(3);
   if (word.size() > 1 && (word[0] == 'r' || word[0] == 'R')) word.remove_prefix(1);
@@ -59,9 +63,10 @@ PageAspheres::PageAspheres(std::span<const PageLine> page, Import& in) : in_(in)
 
 std::optional<PageAspheres::Key> PageAspheres::key_of(std::string_view word) const {
   const std::string name = plain(word);
+  if (name.empty()) return {};
   Key key{.name = std::string(word), .order = {}};
   const bool greek = word.starts_with("\u03ba");
-  if (is_one_of(name, "k cc conic kappa ka \u03b5 epsilon")) {
+  if (is_one_of(name, "k p cc conic conicconstant kappa ka \u03b5 epsilon")) {
     const bool one = greek || (name != "k" && name != "cc" && name != "conic");
     key.of_sphere_is_1 = (one && !k_of_sphere_is_0_) || (name == "k" && k_of_sphere_is_1_ && !k_of_sphere_is_0_);
     return key;
@@ -70,13 +75,16 @@ std::optional<PageAspheres::Key> PageAspheres::key_of(std::string_view word) con
     key.is_radius = true;
     return key;
   }
-  if (name.size() == 1 && letters.find(name[0]) != letters.npos) {
+  if (name.size() == 1 && letters.find(word[0]) != letters.npos) {
     key.letter = name[0];
     key.order = 0;
     return key;
   }
   // "A4", "C6", "A(10)", "AD" to "AJ".
-  std::string digits = name.starts_with('a') || name.starts_with('c') ? name.substr(1) : std::string();
+  const bool letter = name[0] >= 'a' && name[0] <= 'c';
+  std::string digits = name.find("order") != name.npos ? name.substr(0, name.find_first_not_of("0123456789"))
+                       : letter                        ? name.substr(1)
+                                                       : std::string();
   std::erase_if(digits, [](char c) { return c == '(' || c == ')' || c == '_'; });
   if (name.size() == 2 && digits.size() == 1 && digits[0] >= 'd' && digits[0] <= 'j') {
     key.order = 4 + 2 * (digits[0] - 'd');
@@ -94,6 +102,7 @@ std::vector<PageAspheres::Key> PageAspheres::keys_of(const PageLine& line, std::
     std::string word = line.tokens[i].text;
     const bool apart = i + 1 < line.tokens.size() && line.tokens[i + 1].is_number && is_one_of(word, "A C");
     if (apart) word += line.tokens[++i].text;
+    if (i + 1 < line.tokens.size() && same(line.tokens[i + 1].text, "order")) word += line.tokens[++i].text;
     const auto key = key_of(word);
     if (!key) return {};
     keys.push_back(*key);
@@ -105,10 +114,22 @@ std::vector<PageAspheres::Key> PageAspheres::keys_of(const PageLine& line, std::
 
 /// Takes the name of one surface or more: "Surface 2", "2nd surface", "Surface number: 1 5 8", "r3:". Returns the
 /// number of tokens; 0 if the line begins with other words.
-std::size_t PageAspheres::name_surfaces(const PageLine& line) {
+std::size_t PageAspheres::name_surfaces(const PageLine& whole) {
+  PageLine line = whole;
+  // "(2nd surface)", "[Aspheric data of surface 2]".
+  if (line.tokens[0].text[0] == '(' || line.tokens[0].text[0] == '[') {
+    std::ranges::replace_if(
+        line.text, [](char c) { return std::string_view("()[]").find(c) != std::string_view::npos; }, ' ');
+    line.tokens = tokens_of(line.text, false);
+    if (line.tokens.empty() || line.numbers() > 1) return 0;
+  }
   const auto& t = line.tokens;
+  const auto is_radius = [](const PageToken& x) { return lower(x.text)[0] == 'r' && surface_number(x.text); };
+  const bool all_radii = t.size() > 1 && std::ranges::all_of(t, is_radius);
   const auto is_word = [](std::string_view word) {
-    return is_one_of(word, "surface surfaces surf surf. s si sn m no no. number numbers aspheric aspherical lens face");
+    return is_one_of(
+        word,
+        "surface surfaces surf surf. s si sn m no no. # number numbers aspheric aspherical lens face data of for the");
   };
   std::vector<int> found;
   std::size_t i = 0;
@@ -125,8 +146,11 @@ std::size_t PageAspheres::name_surfaces(const PageLine& line) {
     const bool equals_next = i + 1 < t.size() && t[i + 1].text == "=";
     const auto number = surface_number(word);
     if (!number || (t[i].is_number && t[i].text.find_first_not_of("0123456789") != t[i].text.npos)) break;
-    const bool radius = std::string_view("rRsS").find(word[0]) != word.npos && (t.size() == 1 || equals_next);
-    const bool marked = !t[i].is_number && (radius || lower(word).starts_with("no."));
+    const bool key_next = i + 2 < t.size() && t[i + 2].text == "=" && key_of(t[i + 1].text);
+    const bool radius =
+        std::string_view("rRsS").find(word[0]) != word.npos && (t.size() == 1 || equals_next || key_next || all_radii);
+    const bool star = t.size() == 1 && t[i].text[0] == '*';
+    const bool marked = !t[i].is_number && (radius || star || lower(word).starts_with("no."));
     named = named || marked;
     found.push_back(*number);
   }
@@ -136,6 +160,14 @@ std::size_t PageAspheres::name_surfaces(const PageLine& line) {
   surfaces_ = std::move(found);
   columns_.clear();
   return i;
+}
+
+/// True unless a letter lacks the letter before it: "F = 3.5" below "A4 = ..." is no term.
+bool PageAspheres::may_follow(const Key& key) const {
+  const auto at = values_.find(surfaces_.front());
+  if (key.letter <= 'b') return true;
+  const auto before = [&](const Value& v) { return v.key.letter == key.letter - 1; };
+  return at != values_.end() && std::ranges::any_of(at->second, before);
 }
 
 void PageAspheres::put(int surface, const Key& key, const PageLine& line, const PageToken& value) {
@@ -157,17 +189,28 @@ void PageAspheres::put(int surface, const Key& key, const PageLine& line, const 
   values.push_back({key, line.number, in_.number(line.number, key.name, text)});
 }
 
+void PageAspheres::refuse_row() const {
+  in_.must_be(row_line_, "aspheric data", std::to_string(row_.size()) + " values",
+              std::to_string(columns_.size()) + ", one per head; \"-\" for a term that is absent");
+}
+
 /// A row below a head: the number of the surface and a value per key.
 bool PageAspheres::take_row(const PageLine& line) {
   std::size_t star = line.tokens[0].text == "*" ? 1 : 0;
   if (columns_.empty() || star >= line.tokens.size()) return false;
+  // A row may continue in the next line.
+  const bool continues = !row_.empty() && line.numbers() == line.tokens.size();
   const auto surface = surface_number(line.tokens[star].text);
-  if (!surface || line.numbers() < 2) return false;
-  if (line.tokens.size() - star - 1 != columns_.size()) {
-    in_.must_be(line.number, "aspheric data", std::to_string(line.tokens.size() - star - 1) + " values",
-                std::to_string(columns_.size()) + ", one per head; \"-\" for a term that is absent");
-  }
-  for (std::size_t i = 0; i < columns_.size(); ++i) put(*surface, columns_[i], line, line.tokens[star + 1 + i]);
+  if (!continues && !row_.empty()) refuse_row();
+  if (!continues && (!surface || line.numbers() < 2)) return false;
+  if (!continues) surfaces_ = {*surface}, row_line_ = line.number;
+  const auto from = line.tokens.begin() + static_cast<std::ptrdiff_t>(continues ? 0 : star + 1);
+  row_.insert(row_.end(), from, line.tokens.end());
+  if (row_.size() > columns_.size()) refuse_row();
+  if (row_.size() < columns_.size()) return true;
+  for (std::size_t i = 0; i < columns_.size(); ++i) put(surfaces_[0], columns_[i], line, row_[i]);
+  row_.clear();
+  surfaces_.clear();
   return true;
 }
 
@@ -185,8 +228,14 @@ bool PageAspheres::take_values(const PageLine& line, std::size_t from, bool titl
     // "A 4 = 1.2E-05", and "A 4 1.2E-05".
     const bool integer = next < t.size() && t[next].text.size() <= 2 && t[next].is_number && t[next].text[0] != '-';
     if (integer && is_one_of(word, "A C") && next + 1 < t.size()) word += t[next++].text;
+    // "Conic constant = 0.5", "4th order coefficient = 1.2E-05".
+    const auto equals =
+        static_cast<std::size_t>(std::ranges::find(t.begin() + i, t.end(), "=", &PageToken::text) - t.begin());
+    for (const bool named = equals < t.size() && equals <= next + 2 && !key_of(word); named && next < equals;) {
+      word += t[next++].text;
+    }
     const auto key = key_of(word);
-    if (!key) break;
+    if (!key || !may_follow(*key)) break;
     if (next < t.size() && t[next].text == "=") ++next;
     std::size_t count = 0;
     while (is_value(next + count) && count < surfaces_.size()) ++count;
@@ -211,8 +260,11 @@ bool PageAspheres::take_values(const PageLine& line, std::size_t from, bool titl
 
 bool PageAspheres::take(const PageLine& line, bool titled) {
   if (take_row(line)) return true;
+  if (!row_.empty()) refuse_row();
   const std::size_t named = name_surfaces(line);
-  if (named > 0) return named == line.tokens.size() || take_values(line, named, true);
+  if (named > 0)
+    return named >= line.tokens.size() || line.tokens[0].text[0] == '(' || line.tokens[0].text[0] == '[' ||
+           take_values(line, named, true);
   if (take_values(line, 0, titled)) return true;
   const bool first_is_surface = is_one_of(line.tokens[0].text, "surface surf surf. s si sn m no no. i number");
   std::size_t from = first_is_surface ? 1 : 0;
@@ -235,6 +287,7 @@ int PageAspheres::order_of(const Value& value) const {
 }
 
 void PageAspheres::apply(const PageTable& table) {
+  if (!row_.empty()) refuse_row();
   const auto& rows = table.rows();
   const bool labels = std::ranges::any_of(rows, [](const PageRow& row) { return row.label.has_value(); });
   std::vector<bool> has_data(rows.size(), false);

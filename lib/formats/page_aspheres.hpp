@@ -44,8 +44,10 @@ class PageAspheres {
 
   std::optional<Key> key_of(std::string_view word) const;
   std::vector<Key> keys_of(const PageLine& line, std::size_t from, bool titled) const;
-  std::size_t name_surfaces(const PageLine& line);
+  std::size_t name_surfaces(const PageLine& whole);
   bool take_row(const PageLine& line);
+  bool may_follow(const Key& key) const;
+  [[noreturn]] void refuse_row() const;
   bool take_values(const PageLine& line, std::size_t from, bool titled);
   void put(int surface, const Key& key, const PageLine& line, const PageToken& value);
   int order_of(const Value& value) const;
@@ -54,7 +56,9 @@ class PageAspheres {
   std::map<int, std::vector<Value>> values_;  ///< by the label of the surface
   std::vector<int> surfaces_;                 ///< of the block
   std::vector<Key> columns_;                  ///< of the head
-  std::optional<int> order_of_a_;             ///< from the formula of the page
+  std::vector<PageToken> row_;                ///< values of a row that the next line continues
+  int row_line_ = 0;
+  std::optional<int> order_of_a_;  ///< from the formula of the page
   bool k_of_sphere_is_0_ = false, k_of_sphere_is_1_ = false;
 };
 

@@ -38,21 +38,51 @@ std::string plain(std::string_view name) {
     const std::size_t close = name[i] == '(' ? name.find(')', i) : name[i] == '[' ? name.find(']', i) : name.npos;
     if (close != name.npos) {
       i = close;
-    } else if (std::string_view(" \t()[]:,.*-").find(name[i]) == std::string_view::npos) {
+    } else if (std::string_view(" \t()[]:,.*-'").find(name[i]) == std::string_view::npos) {
       result += lower(name[i]);
     }
   }
   return result;
 }
 
-/// The number in "1:2.8" and "f/2.8", or the token.
-PageToken without_ratio(const PageToken& token) {
+/// The number in "1:2.8", "f/2.8" and "F2.8"; empty for other words.
+std::string f_number_of(std::string_view word) {
   for (const std::string_view start : {"1:", "f/", "F/", "F"}) {
-    if (!token.text.starts_with(start)) continue;
-    const std::string_view rest = std::string_view(token.text).substr(start.size());
-    if (number(rest)) return {std::string(rest), true};
+    if (word.starts_with(start) && number(word.substr(start.size()))) return std::string(word.substr(start.size()));
   }
-  return token;
+  return {};
+}
+
+/// The tokens of a line; "24.7-67.9" becomes two numbers.
+std::vector<PageToken> with_ranges(const std::vector<PageToken>& tokens) {
+  std::vector<PageToken> result;
+  for (const PageToken& token : tokens) {
+    std::string apart = token.text;
+    if (apart.size() > 2 && apart.ends_with("mm") && number(apart.substr(0, apart.size() - 2))) {
+      result.push_back({apart.substr(0, apart.size() - 2), true});  // "51.6mm"
+      continue;
+    }
+    std::replace(apart.begin() + (apart.empty() ? 0 : 1), apart.end(), '-', ' ');
+    const auto parts = words(apart);
+    if (token.is_number || parts.size() < 2 ||
+        !std::ranges::all_of(parts, [](auto p) { return number(p).has_value(); })) {
+      result.push_back(token);
+    } else {
+      for (const std::string_view part : parts) result.push_back({std::string(part), true});
+    }
+  }
+  // "14.4 - 20.0 - 29.1": a dash between all numbers separates them.
+  const auto is_dash = [](const PageToken& token) { return is_one_of(token.text, "- to"); };
+  const auto dashes = std::ranges::count_if(result, is_dash);
+  std::size_t between = 0;
+  for (std::size_t i = 1; i + 1 < result.size(); ++i) {
+    between += is_dash(result[i]) && result[i - 1].is_number && result[i + 1].is_number;
+  }
+  const auto numbers = std::ranges::count(result, true, &PageToken::is_number);
+  if (dashes > 0 && between == static_cast<std::size_t>(dashes) && dashes + 1 == numbers) {
+    std::erase_if(result, is_dash);
+  }
+  return result;
 }
 
 }  // namespace
@@ -89,8 +119,12 @@ bool PagePositions::take_names(const PageLine& line) {
 bool PagePositions::take_columns(const PageLine& line) {
   std::vector<std::string> found;
   bool any_gap = false;
-  for (const PageToken& token : line.tokens) {
-    const auto name = quantity(token.text);
+  for (std::size_t i = 0; i < line.tokens.size(); ++i) {
+    const PageToken& token = line.tokens[i];
+    auto name = quantity(token.text);
+    if (!name && i + 1 < line.tokens.size()) name = quantity(token.text + line.tokens[i + 1].text);
+    if (name && !quantity(token.text)) ++i;
+    if (!name && found.empty() && is_one_of(token.text, "position positions state zoom")) continue;
     if (!name || token.text == "=") return false;
     any_gap = any_gap || gaps_.contains(*name);
     found.push_back(*name);
@@ -122,17 +156,25 @@ void PagePositions::put(const std::string& quantity, Values values) {
     if (!number(text))
       in_.must_be(values.line, values.name, io_detail::in_quotes(text), "a number with a decimal point");
   }
+  // "F = 4 f = 100": F is the f-number beside a focal length f.
+  const auto known_f = values_.find(quantity);
+  if (quantity == "Focal Length" && known_f != values_.end() && (values.name == "F") != (known_f->second.name == "F")) {
+    Values& of_f = values.name == "F" ? values : known_f->second;
+    values_.try_emplace("F-Number", of_f);
+    if (&of_f != &values) known_f->second = std::move(values);
+    return;
+  }
   const auto [at, is_new] = values_.try_emplace(quantity, values);
-  if (is_new || at->second.numbers == values.numbers) return;
   const bool gap = gaps_.contains(quantity) || quantity == "Bf" || quantity == "d0" || !columns_.empty();
+  if (is_new || (!gap && at->second.numbers == values.numbers)) return;
   auto& known = at->second.numbers;
   const bool longer = values.numbers.size() > known.size() &&
                       std::equal(known.begin(), known.end(), values.numbers.begin(),
                                  [](const auto& a, const auto& b) { return number(a) == number(b); });
   if (longer) return void(at->second = std::move(values));
-  if (gap || (known.size() > 1 && values.numbers.size() > 1)) {
+  if (gap || (known.size() > 1 && values.numbers.size() == known.size())) {
     known.insert(known.end(), values.numbers.begin(), values.numbers.end());
-  } else if (known.size() == 1 && values.numbers.size() > 1) {
+  } else if (known.size() < values.numbers.size()) {
     at->second = std::move(values);
   } else if (known.size() == 1) {
     in_.must_be(values.line, values.name,
@@ -143,15 +185,18 @@ void PagePositions::put(const std::string& quantity, Values values) {
 
 bool PagePositions::take(const PageLine& line) {
   if (take_names(line) || take_columns(line) || take_row(line)) return true;
-  const auto& t = line.tokens;
+  const std::vector<PageToken> t = with_ranges(line.tokens);
   std::vector<std::pair<std::string, Values>> found;
   for (std::size_t i = 0; i < t.size();) {
+    if (const std::string ratio = f_number_of(t[i].text); !ratio.empty() && !found.empty()) {
+      found.emplace_back("F-Number", Values{line.number, t[i++].text, {ratio}});
+      continue;
+    }
     // The name is all words before the value, or the last words.
     std::size_t end = i;
     const auto is_value = [&](std::size_t at) {
       if (at >= t.size()) return false;
-      return t[at].is_number || (at > i && (is_plane_word(t[at].text) || is_meant_as_number(t[at].text))) ||
-             (at > i && without_ratio(t[at]).is_number);
+      return t[at].is_number || (at > i && (is_plane_word(t[at].text) || is_meant_as_number(t[at].text)));
     };
     while (end < t.size() && t[end].text != "=" && !is_value(end) && !(end > i && is_none(t[end].text))) ++end;
     std::string joined;
@@ -171,8 +216,14 @@ bool PagePositions::take(const PageLine& line) {
     }
     if (end < t.size() && t[end].text == "=") ++end;
     Values values{line.number, joined, {}};
-    while (end < t.size() && (is_value(end) || is_none(t[end].text))) {
-      values.numbers.push_back(without_ratio(t[end++]).text);
+    const auto is_ratio = [&](std::size_t at) {
+      return at < t.size() && !t[at].is_number && name == "F-Number" && !f_number_of(t[at].text).empty();
+    };
+    if (name == "Focal Length" && end < t.size() && t[end].text.starts_with("1:")) name = "F-Number";  // "F = 1:4"
+    while (end < t.size() && (is_value(end) || is_none(t[end].text) || is_ratio(end))) {
+      const std::string ratio = is_ratio(end) ? f_number_of(t[end].text) : std::string();
+      values.numbers.push_back(ratio.empty() ? t[end].text : ratio);
+      ++end;
     }
     if (end == i) ++end;
     i = end;
@@ -195,10 +246,31 @@ void PagePositions::scale(Positions& positions, const char* from, const char* to
   positions.variables.try_emplace(to, std::move(variable));
 }
 
+/// A second block of positions may list only the distances that differ.
+void PagePositions::repeat_blocks(std::size_t count) {
+  std::size_t block = count;
+  for (const std::string& gap : gaps_) {
+    if (const auto at = values_.find(gap); at != values_.end()) block = std::min(block, at->second.numbers.size());
+  }
+  if (block < 2 || block == count || count % block != 0) return;
+  for (const std::string& gap : gaps_) {
+    const auto at = values_.find(gap);
+    if (at == values_.end() || at->second.numbers.size() != block) continue;
+    auto& [line, name, numbers] = at->second;
+    in_.warn(line, name, "has " + std::to_string(block) + " values; they are repeated for the other positions");
+    for (std::size_t i = 0; numbers.size() < count; ++i) numbers.push_back(std::string(numbers[i]));
+  }
+}
+
 void PagePositions::apply(Positions& positions) {
   std::size_t count = 1;
   for (const auto& [name, values] : values_) count = std::max(count, values.numbers.size());
+  repeat_blocks(count);
   for (auto& [name, values] : values_) {
+    // The ends of a range.
+    if (values.numbers.size() == 2 && count % 2 == 1 && !gaps_.contains(name)) {
+      values.numbers.insert(values.numbers.begin() + 1, count - 2, "undefined");
+    }
     // A second block of positions may lack a quantity. A distance is stated for each position.
     const std::size_t own = values.numbers.size();
     const bool gap = gaps_.contains(name);

@@ -25,18 +25,6 @@ struct Embodiment {
   std::size_t first = 0, head = 0, last = 0;
 };
 
-bool names_radius_1(const PageLine& line) {
-  for (std::size_t i = 0; i + 1 < line.tokens.size(); ++i) {
-    const auto& value = i + 2 < line.tokens.size() ? line.tokens[i + 2] : PageToken();
-    if (line.tokens[i + 1].text != "=" || !(value.is_number || is_plane_word(value.text))) continue;
-    std::string name = lower(line.tokens[i].text);
-    if (line.tokens[i].is_number && i > 0) name = lower(line.tokens[i - 1].text) + name;
-    std::erase_if(name, [](char c) { return c == '\'' || c == '*' || c == ' '; });
-    if (name == "r1") return true;
-  }
-  return false;
-}
-
 /// True if the rows below a head begin with the first surface, and do not continue a table.
 bool begins_table(std::span<const PageLine> below) {
   for (const PageLine& line : below.first(std::min<std::size_t>(below.size(), 8))) {
@@ -52,7 +40,7 @@ std::vector<Embodiment> embodiments_of(std::span<const PageLine> lines) {
   std::vector<Embodiment> all;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool head = !surface_columns(lines[i]).empty() && begins_table(lines.subspan(i + 1));
-    if (!head && !names_radius_1(lines[i])) continue;
+    if (!head && !names_radius(lines[i], 1)) continue;
     Embodiment next{0, i, lines.size()};
     if (!all.empty()) {
       // The title of an example, and its focal length, precede its table.
@@ -130,10 +118,10 @@ bool PageReader::open_section(const PageLine& line) {
   if (!line.numbers() && line.tokens.size() > 12) return false;  // a sentence
   if (line.says("aspher")) {
     section_ = Section::aspheres;
-  } else if (line.says("group lens-unit condition expression correspond single-lens") || line.says("lens unit") ||
-             line.says("single lens")) {
+  } else if (line.says("condition expression") || (line.says("group unit single") && line.says("data focal"))) {
     section_ = Section::skipped;
-  } else if (line.says("variable various specification general") || line.says("zoom distance interval spacing")) {
+  } else if (line.says("variable various specification general interval spacing") ||
+             (line.says("zoom") && line.says("data distance ratio"))) {
     section_ = Section::positions;
   } else {
     return false;
@@ -147,14 +135,19 @@ void PageReader::skip(const PageLine& line) {
   const auto is_coefficient = [](const PageToken& x) { return x.is_number && x.text.find('e') != x.text.npos; };
   const bool coefficient = std::ranges::any_of(t, is_coefficient);
   const bool numbers = line.numbers() > 1 && 2 * line.numbers() > t.size();
-  const bool value = std::ranges::any_of(t, [](const PageToken& x) { return x.text == "="; }) && line.numbers() > 0;
+  // "AlO = 0.0001" is a term with letters for digits.
+  const auto is_term = [](const PageToken& x) {
+    return x.text.size() < 5 && std::string_view("ABCKabck").find(x.text[0]) != std::string_view::npos;
+  };
+  bool value = false;
+  for (std::size_t i = 1; i < t.size(); ++i) value = value || (t[i].text == "=" && is_term(t[i - 1]));
   // "Exit pupil position 20.1 30.2", "3 4" at the top of a page.
   const auto is_word = [](const PageToken& x) {
     return std::ranges::count_if(x.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }) > 2 &&
            x.text.find_first_of("0123456789") == x.text.npos && !is_plane_word(x.text);
   };
   const bool named = is_word(t[0]) && (section_ == Section::positions || (t.size() > 1 && is_word(t[1])));
-  const bool top = t.size() == 2 && label_of(t[0].text) && label_of(t[1].text) == *label_of(t[0].text) + 1;
+  const bool top = is_top(line) || is_one_of(t[0].text, "US EP JP DE GB FR CN KR TW WO");
   const bool suspect = coefficient || (numbers && !named && !top) || (value && section_ == Section::aspheres);
   if (!table_.is_empty() && section_ != Section::skipped && suspect && !line.says("continued")) {
     in_.must_be(line.number, "line", line.said(),
@@ -175,6 +168,8 @@ void PageReader::take(const PageLine& line) {
   if (start.starts_with("# ") || start.starts_with("//") || start.starts_with('%')) {
     return in_.note(trimmed(start.substr(start.find_first_not_of("#/%"))));
   }
+  // A title may stand between rows.
+  if (!table_.is_empty() && table_.is_next(line)) section_ = Section::rows;
   if (section_ == Section::rows && table_.take_row(line)) return in_.limit(table_.rows().size());
   if (section_ == Section::rows && table_.is_other_row(line)) {
     in_.must_be(line.number, "row", line.said(), "the row that follows the row above");
@@ -230,6 +225,7 @@ void PageReader::build() {
   if (surfaces.size() != rows.size()) {
     in_.must_be(rows.front().line, "table", std::to_string(rows.size()) + " rows", "a surface per row");
   }
+  if (table_.object_distance()) in_.lens.design.object_distance_mm = *table_.object_distance();
   aspheres_.apply(table_);
   values_->apply(positions_);
   const auto at = [&](const std::string& name) -> Variable* {
@@ -263,6 +259,8 @@ void PageReader::build() {
   in_.requests.nominal_aperture = likely;
   if (in_.lens.focal_length_mm) {
     in_.requests.focal_length = {at("Focal Length")->line, "f", *in_.lens.focal_length_mm, false, true};
+  } else {
+    in_.warn(rows.front().line, "f", "is not stated by the page; no focal length checks the table");
   }
 }
 
@@ -290,8 +288,9 @@ bool is_page(std::string_view text) {
       table.set_head(line, std::move(columns));
       continue;
     }
-    if (names_radius_1(line)) return true;
+    if (names_radius(line, 1)) return true;
     if (table.take_row(line)) continue;
+    if (table.is_other_row(line)) return true;
     const std::string_view first = line.tokens.front().text;
     const bool value = std::ranges::any_of(line.tokens, [](const PageToken& t) { return t.text == "="; });
     const auto letters = std::ranges::count_if(first, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; });

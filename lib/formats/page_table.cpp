@@ -51,9 +51,11 @@ struct Mark {
 
 Mark mark_in(std::string_view word) {
   const bool in_brackets = word.size() > 2 && word.starts_with('(') && word.ends_with(')');
+  const bool element = word.size() > 1 && (word[0] == 'L' || word[0] == 'G') && label_of(word.substr(1));
   const std::string inner = lower(in_brackets ? word.substr(1, word.size() - 2) : word);
   const auto contains = [&](std::string_view part) { return inner.find(part) != std::string::npos; };
-  Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || is_one_of(word, "fs fc cg st sp")};
+  Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || element ||
+                       is_one_of(word, "fs fc cg st sp")};
   if (!mark.is_mark || contains("variable") || contains("flare") || !variable_name(inner).empty()) {
     mark.is_mark = mark.is_mark && contains("flare");
     return mark;
@@ -64,7 +66,44 @@ Mark mark_in(std::string_view word) {
   return mark;
 }
 
+/// A value with a name: "r1 = 5", "r 1 = 5", "r1 5", "nD = 1.65". `kind` is empty for other words.
+struct Named {
+  std::string kind, number;
+  std::size_t value = 0;  ///< place of the value
+};
+
+Named named_at(const std::vector<PageToken>& t, std::size_t i) {
+  std::string name = lower(t[i].text);
+  std::erase_if(name, [](char c) { return std::string_view("'*()").find(c) != std::string_view::npos; });
+  std::size_t next = i + 1;
+  if (next + 1 < t.size() && t[next].is_number && t[next + 1].text == "=") name += t[next++].text;
+  const bool equals = next < t.size() && t[next].text == "=";
+  const std::size_t value = next + equals;
+  const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
+  const bool may_lack_number = equals && is_one_of(name, "n nd v vd \u03bd \u03bdd");
+  if (value >= t.size() || digits == 0 || (digits == name.size() && !may_lack_number)) return {};
+  if (name.find_first_not_of("0123456789", digits) != std::string::npos) return {};
+  // Without "=", a row of positions has several numbers.
+  if (!equals && value + 1 < t.size() && t[value + 1].is_number) return {};
+  return {name.substr(0, digits), name.substr(digits), value};
+}
+
 }  // namespace
+
+bool names_radius(const PageLine& line, int label) {
+  for (std::size_t i = 0; i + 1 < line.tokens.size(); ++i) {
+    const Named name = named_at(line.tokens, i);
+    const PageToken& value = line.tokens[name.value];
+    if (name.kind == "r" && label_of(name.number) == label && (value.is_number || is_plane_word(value.text)))
+      return true;
+  }
+  return false;
+}
+
+bool is_top(const PageLine& line) {
+  const auto& t = line.tokens;
+  return t.size() == 2 && label_of(t[0].text) && label_of(t[1].text) == *label_of(t[0].text) + 1;
+}
 
 std::string variable_name(std::string_view word) {
   std::string name;
@@ -85,6 +124,10 @@ std::vector<TableColumn> surface_columns(const PageLine& line) {
   for (const char separator : {'\t', '|', ';', ',', ' '}) {
     std::vector<std::string_view> heads;
     std::vector<PageToken> cells = separator == ' ' ? line.tokens : divided(line.text, separator);
+    // "\u03b8g, F" is one head.
+    std::erase_if(cells, [&](const PageToken& cell) {
+      return &cell != cells.data() && is_one_of(cell.text, "F Fj") && (&cell - 1)->text.starts_with("\u03b8");
+    });
     for (const PageToken& cell : cells) {
       if (cell.text != "-" && cell.text != "=") heads.push_back(cell.text);
     }
@@ -112,7 +155,8 @@ PageRow* PageTable::find(int label) {
 void PageTable::set_head(const PageLine& line, std::vector<TableColumn> columns) {
   head_line_ = line.number;
   labelled_ = columns.front().kind == Column::number;
-  std::erase_if(columns, [](const TableColumn& c) { return c.kind == Column::number; });
+  if (labelled_) columns.erase(columns.begin());
+  counted_ = labelled_ || std::ranges::find(columns, Column::number, &TableColumn::kind) != columns.end();
   columns_ = std::move(columns);
   separator_ = ' ';
   for (const char separator : {'\t', '|', ';', ','}) {
@@ -140,10 +184,17 @@ std::vector<PageToken> PageTable::cells_of(const PageLine& line, std::size_t fro
 PageRow PageTable::take_marks(const PageLine& line, std::size_t from) const {
   PageRow row{.line = line.number};
   std::vector<PageToken> cells = cells_of(line, from);
+  // "inf(stop)".
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::size_t bracket = std::min(cells[i].text.find('('), cells[i].text.size());
+    if (bracket == cells[i].text.size() || !is_plane_word(cells[i].text.substr(0, bracket))) continue;
+    cells.insert(cells.begin() + static_cast<std::ptrdiff_t>(i) + 1, {cells[i].text.substr(bracket)});
+    cells[i].text.resize(bracket);
+  }
   const auto take = [&](std::size_t at) {
     const Mark mark = mark_in(cells[at].text);
-    const bool plane_follows = at + 1 < cells.size() && is_plane_word(cells[at + 1].text);
-    const bool short_s = same(cells[at].text, "s") && plane_follows;
+    const bool plane = is_plane_word(cells[at + 1 < cells.size() ? at + 1 : 0].text);
+    const bool short_s = same(cells[at].text, "s") && plane;
     if (!mark.is_mark && !short_s) return false;
     if (mark.stop || short_s) row.stop = "stop";
     row.asphere = row.asphere || mark.asphere;
@@ -165,43 +216,64 @@ PageRow PageTable::take_marks(const PageLine& line, std::size_t from) const {
   return row;
 }
 
-bool PageTable::take_row(const PageLine& whole) {
+/// The label that the next row has; nullopt before the first row, and if rows have no labels.
+std::optional<int> PageTable::next_label() const {
+  const auto last =
+      std::ranges::find_if(rows_.rbegin(), rows_.rend(), [](const PageRow& row) { return row.label.has_value(); });
+  return last == rows_.rend() ? std::nullopt : std::optional(*last->label + 1);
+}
+
+/// The tokens of a row without words that name the element: "L1 1 52.1", "2 Lens 1 42.9", "6: inf", "8 IR filter inf".
+std::vector<PageToken> PageTable::row_tokens(const PageLine& line) const {
+  std::vector<PageToken> t = line.tokens;
+  if (separator_ != ' ' || !labelled_) return t;
+  const std::string& first = t[0].text;
+  const bool element = (first[0] == 'L' || first[0] == 'G') && first.size() > 1 && label_of(first.substr(1));
+  if (element && t.size() > 2 && label_of(t[1].text)) t.erase(t.begin());
+  if (!label_of(t[0].text)) return t;
+  if (t.size() > 1 && t[1].text == "=") t.erase(t.begin() + 1);
+  const auto is_name = [](const PageToken& token) {
+    const auto letters = std::ranges::count_if(token.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; });
+    return letters > 2 && !is_plane_word(token.text) && !is_stop_word(token.text) && !is_asphere_mark(token.text) &&
+           !is_image(token.text) && variable_name(token.text).empty() && token.text[0] != '(' &&
+           lower(token.text).find("variable") == std::string::npos;
+  };
+  while (t.size() > 2 && is_name(t[1])) {
+    const bool lens = same(t[1].text, "lens") && label_of(t[2].text);
+    t.erase(t.begin() + 1, t.begin() + (lens ? 3 : 2));
+  }
+  return t;
+}
+
+bool PageTable::take_row(const PageLine& line) {
   if (columns_.empty() || named_) return false;
-  PageLine line = whole;
-  // The lens or the group in front of the number: "L1 1 52.1", "G2 5 -20.3".
-  const std::string& first = line.tokens[0].text;
-  const bool group = (first[0] == 'L' || first[0] == 'G') && first.size() > 1 && label_of(first.substr(1));
-  if (group && labelled_ && separator_ == ' ' && line.tokens.size() > 2 && label_of(line.tokens[1].text))
-    line.tokens.erase(line.tokens.begin());
-  const auto& tokens = line.tokens;
+  if (rows_.empty() && !counted_ && label_of(line.tokens[0].text) && *label_of(line.tokens[0].text) <= 1 &&
+      line.tokens.size() > columns_.size()) {
+    labelled_ = true;
+  }
+  const std::vector<PageToken> tokens = row_tokens(line);
   if (std::ranges::any_of(tokens, [](const PageToken& t) { return t.text == "="; })) return false;
   // The label, with an asterisk in front or behind: "* 5", "5*", "*5)".
   const std::size_t star = tokens.size() > 1 && tokens[0].text == "*" ? 1 : 0;
   const auto [label, mark] = label_and_mark(tokens[star].text);
-  if (rows_.empty() && label && *label <= 1 && tokens.size() > columns_.size()) labelled_ = true;
-  const bool unnumbered = mark_in(tokens[0].text).stop || is_object(tokens[0].text) || is_image(tokens[0].text);
+  const bool s_of_plane = tokens[0].text == "S" && tokens.size() > 1 && is_plane_word(tokens[1].text);
+  const bool unnumbered =
+      mark_in(tokens[0].text).stop || s_of_plane || is_object(tokens[0].text) || is_image(tokens[0].text);
   if (labelled_ && !unnumbered) {
     if (!label || tokens.size() < star + 2) return false;
-    const auto last =
-        std::ranges::find_if(rows_.rbegin(), rows_.rend(), [](const PageRow& r) { return r.label.has_value(); });
-    const int next = last == rows_.rend() ? *label : *last->label + 1;
-    const bool skipped = !rows_.empty() && !rows_.back().label && *label == next + 1;
-    if (*label != next && !skipped) return false;
-    if (last == rows_.rend() && *label > 1) return false;
+    const auto next = next_label();
+    const bool skipped = next && !rows_.back().label && *label == *next + 1;
+    if (next ? *label != *next && !skipped : *label > 1) return false;
   } else if (!unnumbered && !is_plane_word(tokens[0].text) && !tokens[0].is_number &&
              !is_meant_as_number(tokens[0].text)) {
     return false;
   }
-  std::size_t from = labelled_ && !unnumbered ? star + 1 : 0;
-  if (is_object(tokens[0].text) || is_image(tokens[0].text)) {
-    // "Object plane inf (d0)" and "Image plane inf" are no surfaces.
+  const std::size_t from = labelled_ && !unnumbered ? star + 1 : 0;
+  if (is_object(tokens[0].text) || is_image(tokens[from < tokens.size() ? from : 0].text)) {
+    // "Object plane inf (d0)", "Image plane inf" and "9 Image inf" are no surfaces.
     return line.numbers() < 3;
   }
-  PageRow row = take_marks(line, from);
-  // The object: "0 inf inf", "0 inf D0".
-  const auto is_far = [](const PageToken& t) { return is_plane_word(t.text) || variable_name(t.text) == "d0"; };
-  if (rows_.empty() && label == 0 && row.cells.size() > 1 && is_plane_word(row.cells[0].text) && is_far(row.cells[1]))
-    return true;
+  PageRow row = take_marks({line.number, line.text, tokens}, from);
   if (labelled_ && !unnumbered) {
     row.label = label;
     const Mark own = mark_in(mark);
@@ -209,24 +281,44 @@ bool PageTable::take_row(const PageLine& whole) {
     row.asphere = row.asphere || own.asphere || star > 0 || tokens[0].text.find('*') != std::string::npos;
   }
   const auto is_data = [](const PageToken& t) {
-    return t.is_number || is_plane_word(t.text) || is_meant_as_number(t.text);
+    return t.is_number || is_plane_word(t.text) || is_meant_as_number(t.text) || !variable_name(t.text).empty();
   };
   if (std::ranges::none_of(row.cells, is_data)) return false;
+  // The object: "0 inf inf", "0 inf D0", "0 inf 1000.0".
+  const bool object = rows_.empty() && label == 0 && row.stop.empty() && row.cells.size() == 2;
+  if (object && is_plane_word(row.cells[0].text)) {
+    object_distance_ = number(row.cells[1].text);
+    return true;
+  }
   name_gap(row);
   rows_.push_back(std::move(row));
   return true;
 }
 
+bool PageTable::is_next(const PageLine& line) const {
+  const auto next = next_label();
+  if (named_) return next && names_radius(line, *next);
+  return next && label_and_mark(row_tokens(line)[0].text).first == *next && is_row_of_cells(line) && !is_top(line);
+}
+
+/// True for a label and cells.
+bool PageTable::is_row_of_cells(const PageLine& line) const {
+  const auto tokens = row_tokens(line);
+  return tokens.size() > 1 && !tokens[1].text.ends_with('.') &&
+         std::all_of(tokens.begin() + 1, tokens.end(), [](const PageToken& t) {
+           return is_meant_as_number(t.text) || t.is_number || is_plane_word(t.text) || is_none(t.text) ||
+                  mark_in(t.text).is_mark || !variable_name(t.text).empty();
+         });
+}
+
 bool PageTable::is_other_row(const PageLine& line) const {
-  if (rows_.empty() || line.tokens.size() < 2) return false;
-  const auto is_cell = [](const PageToken& t) {
-    return is_meant_as_number(t.text) || t.is_number || is_plane_word(t.text) || is_none(t.text) ||
-           mark_in(t.text).is_mark || !variable_name(t.text).empty();
-  };
-  if (!labelled_) return !named_ && line.tokens.size() >= columns_.size() && std::ranges::all_of(line.tokens, is_cell);
+  if (rows_.empty() || line.tokens.size() < 2 || is_top(line)) return false;
   const auto label = label_of(line.tokens[0].text);
-  return label && rows_.back().label && *label > *rows_.back().label && !line.tokens[1].text.ends_with('.') &&
-         std::all_of(line.tokens.begin() + 1, line.tokens.end(), is_cell);
+  if (!labelled_) {
+    return !named_ && line.tokens.size() >= columns_.size() && (label || is_meant_as_number(line.tokens[0].text)) &&
+           is_row_of_cells(line);
+  }
+  return label && next_label() && *label >= *next_label() && is_row_of_cells(line);
 }
 
 bool PageTable::is_printed() const {
@@ -265,60 +357,62 @@ void PageTable::name_gap(PageRow& row) const {
 
 bool PageTable::take_named(const PageLine& line) {
   const auto& t = line.tokens;
-  bool found = false;
+  const std::size_t rows_before = rows_.size();
+  bool found = false, stop = false, asphere = false;
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (t[i].text != "=" || i == 0 || i + 1 >= t.size()) continue;
-    // "r1 = 5" or "r 1 = 5"; primes are left out.
-    std::string name = lower(t[i - 1].text);
-    std::erase_if(name, [](char c) { return std::string_view("'*()").find(c) != std::string_view::npos; });
-    if (t[i - 1].is_number && i >= 2) name = lower(t[i - 2].text) + name;
-    // "nD = 1.65 V = 58" may lack numbers.
-    const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
-    const bool no_number = digits == name.size() && !is_one_of(name, "n nd v vd \u03bd \u03bdd");
-    if (digits == 0 || no_number) continue;
-    if (name.find_first_not_of("0123456789", digits) != std::string::npos) continue;
-    const std::string kind = name.substr(0, digits);
-    const std::string& value = t[i + 1].text;
-    const bool is_value = t[i + 1].is_number || is_plane_word(value) || is_meant_as_number(value);
-    if (is_one_of(kind, "r radius") && is_value) {
+    const Mark mark = mark_in(t[i].text);
+    if (mark.is_mark) {
+      // A mark belongs to the radius in front of it, or else to the next radius.
+      const bool behind = rows_.size() > rows_before;
+      (behind ? rows_.back().asphere : asphere) |= mark.asphere;
+      if (mark.stop && t[i].text.size() > 1) behind ? void(rows_.back().stop = "stop") : void(stop = true);
+      continue;
+    }
+    if (named_ && !rows_.empty() && take_pair(t[i].text)) continue;
+    const Named name = named_at(t, i);
+    const PageToken& value = t[std::min(name.value, t.size() - 1)];
+    const bool is_value = value.is_number || is_plane_word(value.text) || is_meant_as_number(value.text);
+    if (is_one_of(name.kind, "r radius") && is_value) {
       if (rows_.empty()) {
         named_ = true;
         head_line_ = line.number;
         columns_ = columns_of(std::vector<std::string_view>{"r", "d", "nd", "vd"}, false);
       }
       if (!named_) return false;
-      PageRow row{.line = line.number, .label = label_of(name.substr(digits))};
-      row.cells = {t[i + 1], {"-"}, {"-"}, {"-"}};
-      for (const PageToken& token : t) row.asphere = row.asphere || (mark_in(token.text).asphere && &token < &t[i]);
+      PageRow row{.line = line.number, .label = label_of(name.number), .stop = stop ? "stop" : "", .asphere = asphere};
+      row.cells = {value, {"-"}, {"-"}, {"-"}};
+      stop = asphere = false;
       rows_.push_back(std::move(row));
-      found = true;
-    } else if (named_ && !rows_.empty() && is_one_of(kind, "d t l n nd v vd \u03bd \u03bdd s e")) {
-      const bool gap = is_one_of(kind, "d t l s e");
-      PageRow& row = rows_.back();
-      PageToken& cell = row.cells[gap ? 1 : kind[0] == 'n' ? 2 : 3];
+    } else if (named_ && !rows_.empty() && is_one_of(name.kind, "d t l n nd v vd \u03bd \u03bdd s e")) {
+      const bool gap = is_one_of(name.kind, "d t l s e");
+      PageRow* own = gap && !name.number.empty() ? find(label_of(name.number).value_or(-1)) : nullptr;
+      PageRow& row = own ? *own : rows_.back();
+      PageToken& cell = row.cells[gap ? 1 : name.kind[0] == 'n' ? 2 : 3];
       if (cell.text != "-") return found;  // a second value: a table of positions
-      cell = t[i + 1];
-      if (gap && !t[i + 1].is_number && !is_meant_as_number(value)) {
-        const bool varies = lower(value).find("variable") != std::string::npos;
-        row.variable = varies ? 'd' + name.substr(digits) : variable_name(value);
+      cell = value;
+      if (gap && !value.is_number && !is_meant_as_number(value.text)) {
+        const bool varies = lower(value.text).find("variable") != std::string::npos;
+        row.variable = varies ? 'd' + name.number : variable_name(value.text);
         if (!row.variable.empty()) cell = {"(variable)"};
       }
-      found = true;
+    } else {
+      continue;
     }
+    found = true;
+    i = name.value;
   }
-  if (!found) return false;
-  for (const PageToken& token : t) {
-    const Mark mark = mark_in(token.text);
-    if (mark.stop && token.text.size() > 1) rows_.back().stop = "stop";
-    // "1.6228/56.9" is n/v.
-    const std::size_t slash = token.text.find('/');
-    const auto pair = slash == std::string::npos
-                          ? std::vector<PageToken>()
-                          : tokens_of(token.text.substr(0, slash) + ' ' + token.text.substr(slash + 1),
-                                      token.text.find(',') != std::string::npos);
-    if (pair.size() == 2 && pair[0].is_number && pair[1].is_number)
-      rows_.back().cells[2] = pair[0], rows_.back().cells[3] = pair[1];
-  }
+  if (found && stop) rows_.back().stop = "stop";
+  return found;
+}
+
+/// Takes index and V-number of the last row from "1.6228/56.9".
+bool PageTable::take_pair(const std::string& word) {
+  const std::size_t slash = word.find('/');
+  if (slash == std::string::npos) return false;
+  const bool commas = word.find(',') != std::string::npos;
+  const auto pair = tokens_of(word.substr(0, slash) + ' ' + word.substr(slash + 1), commas);
+  if (pair.size() != 2 || !pair[0].is_number || !pair[1].is_number) return false;
+  std::ranges::copy(pair, rows_.back().cells.begin() + 2);
   return true;
 }
 

@@ -31,6 +31,12 @@ std::vector<TableColumn> surface_columns(const PageLine& line);
 /// for other words.
 std::string variable_name(std::string_view word);
 
+/// True if a line states the radius of a surface by name: "r1 = 52.1".
+bool names_radius(const PageLine& line, int label);
+
+/// True for the numbers of two columns of text at the top of a page: "23 24".
+bool is_top(const PageLine& line);
+
 /// The table of surfaces of a printed page: rows below a head, or "r1 = 52.1 d1 = 3.2 N1 = 1.65 v1 = 58".
 class PageTable {
  public:
@@ -40,6 +46,8 @@ class PageTable {
   bool take_row(const PageLine& line);
   /// Takes radii, thicknesses and indices with names; false if the line has no radius or thickness with a name.
   bool take_named(const PageLine& line);
+  /// True for the row that follows the last one by its label.
+  bool is_next(const PageLine& line) const;
   /// True for a line that is a row of the table, but does not follow its last row.
   bool is_other_row(const PageLine& line) const;
 
@@ -50,6 +58,8 @@ class PageTable {
   const std::vector<TableColumn>& columns() const { return columns_; }
   const std::vector<PageRow>& rows() const { return rows_; }
   PageRow* find(int label);
+  /// Distance of the object, if a row with the label 0 states it.
+  std::optional<double> object_distance() const { return object_distance_; }
   /// Fills the cells that air has not: an air row has neither index nor V-number.
   /// @throws Error for a row that has not the cells of the columns
   void complete(const Import& in);
@@ -60,14 +70,20 @@ class PageTable {
   PageRow take_marks(const PageLine& line, std::size_t from) const;
   std::vector<PageToken> cells_of(const PageLine& line, std::size_t from) const;
   void name_gap(PageRow& row) const;
+  bool take_pair(const std::string& word);
+  std::optional<int> next_label() const;
+  std::vector<PageToken> row_tokens(const PageLine& line) const;
+  bool is_row_of_cells(const PageLine& line) const;
   bool fits(const PageRow& row, const std::vector<std::size_t>& columns, bool last) const;
   void complete(PageRow& row, bool last, const Import& in);
   std::size_t find(Column kind) const;
 
   std::vector<TableColumn> columns_;  ///< without the number of the row
   std::vector<PageRow> rows_;
+  std::optional<double> object_distance_;
   int head_line_ = 0;
   bool labelled_ = false, named_ = false;
+  bool counted_ = false;  ///< true if the head has a column of labels
   char separator_ = ' ';
 };
 

@@ -13,19 +13,20 @@ namespace petzval::formats_detail {
 namespace {
 
 /// Signs of printed pages and their form in ASCII. Superscripts follow a "^".
-constexpr std::array<std::pair<std::string_view, std::string_view>, 35> signs = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 40> signs = {{
     {"\u00b0", " "},  {"\u2212", "-"},  {"\u2010", "-"},   {"\u2011", "-"},  {"\u2013", "-"},  {"\u2014", "-"},
     {"\uff0d", "-"},  {"\u00a0", " "},  {"\u2002", " "},   {"\u2003", " "},  {"\u2007", " "},  {"\u2009", " "},
     {"\u202f", " "},  {"\u3000", " "},  {"\u221e", "inf"}, {"\u00d7", "x"},  {"\u2032", "'"},  {"\u2019", "'"},
     {"\uff1d", "="},  {"\uff5e", " "},  {"\u301c", " "},   {"\u2026", " "},  {"\uff0a", "*"},  {"\u2217", "*"},
     {"\u207b", "^-"}, {"\u2070", "^0"}, {"\u00b9", "^1"},  {"\u00b2", "^2"}, {"\u00b3", "^3"}, {"\u2074", "^4"},
-    {"\u2075", "^5"}, {"\u2076", "^6"}, {"\u2077", "^7"},  {"\u2078", "^8"}, {"\u2079", "^9"},
+    {"\u00b7", "x"},  {"<sup>", "^"},   {"</sup>", ""},    {"^{", "^"},      {"}", ""},        {"\u2075", "^5"},
+    {"\u2076", "^6"}, {"\u2077", "^7"}, {"\u2078", "^8"},  {"\u2079", "^9"},
 }};
 
 std::string in_ascii(std::string_view line) {
   std::string result;
   for (std::size_t i = 0; i < line.size();) {
-    const bool ascii = static_cast<unsigned char>(line[i]) < 0x80;
+    const bool ascii = static_cast<unsigned char>(line[i]) < 0x80 && line[i] != '<' && line[i] != '^' && line[i] != '}';
     const auto sign =
         ascii ? signs.end()
               : std::ranges::find_if(signs, [&](const auto& s) { return line.substr(i).starts_with(s.first); });
@@ -136,6 +137,16 @@ std::vector<PageToken> tokens_of(std::string_view text, bool decimal_commas) {
     if (text[i] == '=' || (text[i] == ':' && (i + 1 == text.size() || text[i + 1] == ' '))) {
       tokens.push_back({"="});
       ++i;
+      // "R1 = + 42.97".
+      const std::size_t sign = text.find_first_not_of(' ', i);
+      if (sign >= text.size() || (text[sign] != '+' && text[sign] != '-')) continue;
+      const std::size_t digit = text.find_first_not_of(' ', sign + 1);
+      if (digit >= text.size() || digit == sign + 1 || !is_digit(text[digit])) continue;
+      NumberScan scan(text.substr(digit), decimal_commas);
+      const std::string number = scan.scan();
+      if (number.empty()) continue;
+      tokens.push_back({(text[sign] == '-' ? "-" : "") + number, true});
+      i = digit + scan.length();
       continue;
     }
     NumberScan scan(text.substr(i), decimal_commas);

@@ -21,16 +21,20 @@ struct Heads {
 constexpr Heads all_heads[] = {
     {Column::number,
      "# no nr num number row m s s# si sn sno i id surf surf# surface surface# surfaceno surfacenumber"},
+    {Column::number, "fl\u00e4che fl\u00e4chennummer"},
+    {Column::left_out, "focallength lensfocallength \u03b8gf \u03b8gfj pgf"},
     {Column::radius, "r ri rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
     {Column::curvature, "c cv cuy curv curvature"},
     {Column::thickness,
-     "d di t th thi thick thickness dist distance gap space spacing separation interval thicknessdistance "
+     "d di t th thi thick thickness dist distance gap dicke abstand space spacing separation interval "
+     "thicknessdistance "
      "axialdistance axialthickness surfacedistance surfaceinterval surfaceseparation surfacespacing onaxisdistance "
      "onaxisspacing "
      "axialspacing airgap thicknessorairgap"},
     {Column::gap_before, "gapbefore gapinfront thicknessbefore distancebefore axpos"},
-    {Column::index, "n nd ndj nj index ior refindex refractiveindex indexofrefraction"},
-    {Column::abbe, "v vd vdj vj v# vno vnumber nu nud abbe abbeno abbenumber abbe'snumber abbevd dispersion"},
+    {Column::index, "n nd ndj nj brechzahl index ior refindex refractiveindex indexofrefraction"},
+    {Column::abbe,
+     "v vd vdj vj v# vno vnumber nu nud abbe abbeno abbenumber abbezahl abv abbe'snumber abbevd dispersion"},
     {Column::glass, "glass glas glassname glasstype material mat mat'l matl medium"},
     {Column::catalogue, "catalog catalogue maker manufacturer"},
     {Column::semi_diameter,
@@ -141,8 +145,8 @@ std::optional<TableColumn> column_of(std::string_view head) {
       const auto nm = number(bracket.substr(0, bracket.find_first_not_of("0123456789.")));
       const bool d_line = bracket == "d" || (nm && std::abs((*nm < 1 ? 1000 * *nm : *nm) - 587.56) < 0.1);
       if (!d_line) return {};
-    } else {
-      name += bracket;  // "A(4)"
+    } else if (!kind) {
+      name += bracket;  // "A(4)"; "Ri (radius of curvature)" says its name twice
     }
   }
   if (!kind_of(name) && name.size() > 2 && name.ends_with("mm")) name.resize(name.size() - 2);
