@@ -311,8 +311,8 @@ void Completion::compare_focal_length() {
     prove_table(lens_, stated.mm, "");
     for (std::size_t i = 1; i < lens_.configurations.size(); ++i) {
       const Configuration& c = lens_.configurations[i];
-      if (c.focal_length_mm && !c.subject_distance_mm)
-        prove_table(configured(lens_, i), *c.focal_length_mm, ", in " + c.name);
+      const bool own = c.focal_length_mm && c.focal_length_mm != lens_.focal_length_mm;  // else a position of focus
+      if (own && !c.subject_distance_mm) prove_table(configured(lens_, i), *c.focal_length_mm, ", in " + c.name);
     }
     return;
   }

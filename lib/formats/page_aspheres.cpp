@@ -13,7 +13,9 @@ namespace petzval::formats_detail {
 namespace {
 
 constexpr std::string_view letters = "ABCDEFGHIJ";
-constexpr std::string_view ordinals = "zeroth first second third fourth fifth sixth seventh eighth ninth tenth";
+constexpr std::string_view ordinals =
+    "zeroth first second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth thirteenth fourteenth "
+    "fifteenth sixteenth seventeenth eighteenth nineteenth twentieth";
 
 /// The text without blanks and brackets of all kinds but "(1+k)", in lower case, with "kappa" for the Greek letter.
 std::string plain(std::string_view text) {
@@ -34,6 +36,11 @@ std::optional<int> surface_number(std::string_view word) {
   const auto names = words(ordinals);
   const auto ordinal = std::ranges::find_if(names, [&](std::string_view name) { return same(name, word); });
   if (ordinal != names.end()) return static_cast<int>(ordinal - names.begin());
+  for (const auto& [tens, value] : {std::pair("twenty-", 20), std::pair("thirty-", 30)}) {
+    if (!lower(word).starts_with(tens)) continue;
+    const auto ones = surface_number(word.substr(7));
+    return ones ? std::optional(value + *ones) : std::nullopt;
+  }
   for (const std::string_view ending : {"-th", "st", "nd", "rd", "th"}) {
     if (word.size() > 2 && lower(word).ends_with(ending)) word.remove_suffix(ending.size());
   }
@@ -48,16 +55,32 @@ PageAspheres::PageAspheres(std::span<const PageLine> page, Import& in) : in_(in)
   for (const PageLine& line : page) {
     const std::string text = plain(line.text);
     k_of_sphere_is_0_ = k_of_sphere_is_0_ || text.find("(1+k)") != text.npos || text.find("(k+1)") != text.npos;
-    k_of_sphere_is_1_ = k_of_sphere_is_1_ || text.find("1-k(") != text.npos || text.find("1-kc^2") != text.npos;
-    // "A h^4" or "+ B y4": the order of A, or of B less two.
-    for (std::size_t i = 1; i + 2 < text.size() && !order_of_a_; ++i) {
-      const bool apart = text[i - 1] == '+' || text[i - 1] == '=' || text[i - 1] == ')';
-      if (!apart || (text[i] != 'a' && text[i] != 'b') || std::string_view("hyrx").find(text[i + 1]) == text.npos)
-        continue;
-      const std::size_t digit = i + 2 + (text[i + 2] == '^');
-      if (digit < text.size() && text[digit] >= '2' && text[digit] <= '6')
-        order_of_a_ = text[digit] - '0' - (text[i] == 'b' ? 2 : 0);
-    }
+    k_of_sphere_is_1_ = k_of_sphere_is_1_ || text.find("1-k") != text.npos || text.find("1-\u03b5") != text.npos;
+    for (std::size_t i = 1; i < text.size(); ++i) take_formula(std::string_view(text).substr(i - 1));
+  }
+}
+
+/// Takes the order of a term from a formula: "+A h^4", "+B x y4" or "+A2 h^4".
+void PageAspheres::take_formula(std::string_view text) {
+  const auto digits = [&](std::size_t& i) {
+    const std::size_t from = i;
+    while (i < text.size() && text[i] >= '0' && text[i] <= '9') ++i;
+    return number(text.substr(from, i - from));
+  };
+  if (text.size() < 4 || std::string_view("+=)").find(text[0]) == text.npos || (text[1] != 'a' && text[1] != 'b'))
+    return;
+  std::size_t i = 2;
+  const auto own = digits(i);
+  if (i < text.size() && text[i] == 'x') ++i;
+  if (i >= text.size() || std::string_view("hyr").find(text[i]) == text.npos) return;
+  ++i;
+  if (i < text.size() && text[i] == '^') ++i;
+  const auto order = digits(i);
+  if (!order || *order < 2 || *order > 40) return;
+  if (own) {
+    orders_.emplace(static_cast<int>(*own), static_cast<int>(*order));
+  } else if (!order_of_a_) {
+    order_of_a_ = static_cast<int>(*order) - (text[1] == 'b' ? 2 : 0);
   }
 }
 
@@ -67,8 +90,7 @@ std::optional<PageAspheres::Key> PageAspheres::key_of(std::string_view word) con
   Key key{.name = std::string(word), .order = {}};
   const bool greek = word.starts_with("\u03ba");
   if (is_one_of(name, "k p cc conic conicconstant kappa ka \u03b5 epsilon")) {
-    const bool one = greek || (name != "k" && name != "cc" && name != "conic");
-    key.of_sphere_is_1 = (one && !k_of_sphere_is_0_) || (name == "k" && k_of_sphere_is_1_ && !k_of_sphere_is_0_);
+    key.of_sphere = greek || (name != "k" && name != "cc" && !name.starts_with("conic")) ? 1 : 0;
     return key;
   }
   if (name == "r") {
@@ -103,6 +125,7 @@ std::vector<PageAspheres::Key> PageAspheres::keys_of(const PageLine& line, std::
     const bool apart = i + 1 < line.tokens.size() && line.tokens[i + 1].is_number && is_one_of(word, "A C");
     if (apart) word += line.tokens[++i].text;
     if (i + 1 < line.tokens.size() && same(line.tokens[i + 1].text, "order")) word += line.tokens[++i].text;
+    if (same(word, "conic") && i + 1 < line.tokens.size() && same(line.tokens[i + 1].text, "constant")) ++i;
     const auto key = key_of(word);
     if (!key) return {};
     keys.push_back(*key);
@@ -138,7 +161,7 @@ std::size_t PageAspheres::name_surfaces(const PageLine& whole) {
     std::string_view word = t[i].text;
     while (!word.empty() && std::string_view("[](),.:#*").find(word.front()) != word.npos) word.remove_prefix(1);
     while (word.size() > 1 && std::string_view("[](),.:#*").find(word.back()) != word.npos) word.remove_suffix(1);
-    if (word == "=" && (named || !found.empty())) continue;
+    if (word.empty() || (word == "=" && (named || !found.empty()))) continue;
     if (is_word(word)) {
       named = true;
       continue;
@@ -199,7 +222,8 @@ bool PageAspheres::take_row(const PageLine& line) {
   std::size_t star = line.tokens[0].text == "*" ? 1 : 0;
   if (columns_.empty() || star >= line.tokens.size()) return false;
   // A row may continue in the next line.
-  const bool continues = !row_.empty() && line.numbers() == line.tokens.size();
+  const auto is_value = [](const PageToken& t) { return t.is_number && t.text.find('.') != t.text.npos; };
+  const bool continues = !row_.empty() && std::ranges::all_of(line.tokens, is_value);
   const auto surface = surface_number(line.tokens[star].text);
   if (!continues && !row_.empty()) refuse_row();
   if (!continues && (!surface || line.numbers() < 2)) return false;
@@ -229,6 +253,8 @@ bool PageAspheres::take_values(const PageLine& line, std::size_t from, bool titl
     const bool integer = next < t.size() && t[next].text.size() <= 2 && t[next].is_number && t[next].text[0] != '-';
     if (integer && is_one_of(word, "A C") && next + 1 < t.size()) word += t[next++].text;
     // "Conic constant = 0.5", "4th order coefficient = 1.2E-05".
+    const bool conic = same(word, "conic") && next < t.size() && is_one_of(t[next].text, "constant coefficient");
+    if (conic) ++next;
     const auto equals =
         static_cast<std::size_t>(std::ranges::find(t.begin() + i, t.end(), "=", &PageToken::text) - t.begin());
     for (const bool named = equals < t.size() && equals <= next + 2 && !key_of(word); named && next < equals;) {
@@ -270,15 +296,33 @@ bool PageAspheres::take(const PageLine& line, bool titled) {
   std::size_t from = first_is_surface ? 1 : 0;
   if (from > 0 && line.tokens.size() > 1 && is_one_of(line.tokens[1].text, "no no. number #")) ++from;
   if (auto keys = keys_of(line, from, titled); !keys.empty()) {
-    columns_ = std::move(keys);
+    // A head may continue in the next line.
+    if (columns_.empty() || head_line_ + 1 != line.number || !keys.front().order) columns_.clear();
+    columns_.insert(columns_.end(), keys.begin(), keys.end());
+    head_line_ = line.number;
     surfaces_.clear();
     return true;
   }
   return false;
 }
 
+/// The number of a sphere in the conics of the page, by its formula, or by values of 0 and 1, which designs seldom have
+/// by chance; else by the name.
+int PageAspheres::number_of_sphere(const Key& key) const {
+  if (same(key.name, "KA")) return 1;
+  if (k_of_sphere_is_0_ || k_of_sphere_is_1_) return k_of_sphere_is_0_ ? 0 : 1;
+  const auto any = [&](double number) {
+    return std::ranges::any_of(values_, [&](const auto& entry) {
+      return std::ranges::any_of(entry.second, [&](const Value& v) { return !v.key.order && v.number == number; });
+    });
+  };
+  return any(0) == any(1) ? key.of_sphere : any(1);
+}
+
 int PageAspheres::order_of(const Value& value) const {
-  if (value.key.letter == '\0') return *value.key.order;
+  // "A2 h^4": the formula gives the order of A2.
+  const auto printed = orders_.find(value.key.order.value_or(0));
+  if (value.key.letter == '\0') return printed != orders_.end() ? printed->second : *value.key.order;
   const auto any_a = [](const auto& entry) {
     return std::ranges::any_of(entry.second, [](const Value& v) { return v.key.letter == 'a' && v.number != 0; });
   };
@@ -292,15 +336,12 @@ void PageAspheres::apply(const PageTable& table) {
   const bool labels = std::ranges::any_of(rows, [](const PageRow& row) { return row.label.has_value(); });
   std::vector<bool> has_data(rows.size(), false);
   const Value* letter = nullptr;
-  const Value* one = nullptr;
-  bool all_one = !values_.empty();
+  const Value* conic = nullptr;
   for (const auto& [surface, values] : values_) {
     for (const Value& v : values) {
       if (v.key.letter != '\0') letter = &v;
-      if (v.key.of_sphere_is_1) one = &v;
-      if (!v.key.order) all_one = all_one && v.number == 1 && !v.key.of_sphere_is_1 && !k_of_sphere_is_0_;
+      if (!v.key.order) conic = &v;
     }
-    all_one = all_one && std::ranges::any_of(values, [](const Value& v) { return !v.key.order; });
   }
   double least_radius = HUGE_VAL;
   for (const SurfaceRow& surface : in_.lens.surfaces) {
@@ -321,7 +362,7 @@ void PageAspheres::apply(const PageTable& table) {
     }
     for (const Value& v : values) {
       if (!v.key.order) {
-        to.conic = v.number - (v.key.of_sphere_is_1 || all_one ? 1 : 0);
+        to.conic = v.number - number_of_sphere(v.key);
       } else if (v.number != 0) {
         const int order = order_of(v);
         const double h = to.semi_diameter.value_or(least_radius / 2);
@@ -346,11 +387,10 @@ void PageAspheres::apply(const PageTable& table) {
       in_.warn(rows[i].line, "surface", "has aspheric data, and is not marked as an asphere");
     }
   }
-  if (all_one) {
-    in_.warn(values_.begin()->second.front().line, "K",
-             "is 1 for all aspheres; it is taken as 1 + k, which a sphere has");
-  } else if (one) {
-    in_.warn(one->line, one->key.name, "is taken as 1 + k, so that a sphere has 1");
+  if (conic && (number_of_sphere(conic->key) == 1 || conic->key.of_sphere == 1)) {
+    const bool one = number_of_sphere(conic->key) == 1;
+    in_.warn(conic->line, conic->key.name,
+             one ? "is taken as 1 + k, so that a sphere has 1" : "is taken as k, so that a sphere has 0");
   }
   if (letter) {
     in_.warn(letter->line, std::string(1, static_cast<char>(letter->key.letter - 32)),

@@ -33,7 +33,7 @@ class PageAspheres {
     std::string name;
     std::optional<int> order;  ///< nullopt for the conic
     char letter = '\0';        ///< of a term with a letter and no order
-    bool of_sphere_is_1 = false;
+    int of_sphere = 0;         ///< usual number of a sphere for the name of a conic: 1 for kappa
     bool is_radius = false;
   };
   struct Value {
@@ -46,18 +46,21 @@ class PageAspheres {
   std::vector<Key> keys_of(const PageLine& line, std::size_t from, bool titled) const;
   std::size_t name_surfaces(const PageLine& whole);
   bool take_row(const PageLine& line);
+  void take_formula(std::string_view text);
   bool may_follow(const Key& key) const;
   [[noreturn]] void refuse_row() const;
   bool take_values(const PageLine& line, std::size_t from, bool titled);
   void put(int surface, const Key& key, const PageLine& line, const PageToken& value);
   int order_of(const Value& value) const;
+  int number_of_sphere(const Key& key) const;
 
   Import& in_;
   std::map<int, std::vector<Value>> values_;  ///< by the label of the surface
   std::vector<int> surfaces_;                 ///< of the block
   std::vector<Key> columns_;                  ///< of the head
   std::vector<PageToken> row_;                ///< values of a row that the next line continues
-  int row_line_ = 0;
+  int row_line_ = 0, head_line_ = 0;
+  std::map<int, int> orders_;      ///< from the formula of the page, by the number of the term
   std::optional<int> order_of_a_;  ///< from the formula of the page
   bool k_of_sphere_is_0_ = false, k_of_sphere_is_1_ = false;
 };

@@ -88,10 +88,10 @@ std::vector<PageToken> with_ranges(const std::vector<PageToken>& tokens) {
 }  // namespace
 
 std::optional<std::string> PagePositions::quantity(std::string_view name) const {
-  const std::string word = plain(name);
+  const std::string word = gaps_.contains(std::string(name)) ? std::string() : plain(name);
   const auto found = std::ranges::find_if(quantities, [&](const auto& q) { return is_one_of(word, q.second); });
   if (found != quantities.end()) return found->first;
-  const std::string gap = variable_name(name);
+  const std::string gap = gaps_.contains(std::string(name)) ? std::string(name) : variable_name(name);
   return gap.empty() || !gaps_.contains(gap) ? std::nullopt : std::optional(gap);
 }
 
@@ -122,14 +122,21 @@ bool PagePositions::take_columns(const PageLine& line) {
   for (std::size_t i = 0; i < line.tokens.size(); ++i) {
     const PageToken& token = line.tokens[i];
     auto name = quantity(token.text);
-    if (!name && i + 1 < line.tokens.size()) name = quantity(token.text + line.tokens[i + 1].text);
-    if (name && !quantity(token.text)) ++i;
+    std::string joined = token.text;
+    for (std::size_t more = 1; !name && more < 4 && i + more < line.tokens.size(); ++more) {
+      name = quantity(joined += line.tokens[i + more].text);
+      if (name) i += more;
+    }
     if (!name && found.empty() && is_one_of(token.text, "position positions state zoom")) continue;
     if (!name || token.text == "=") return false;
     any_gap = any_gap || gaps_.contains(*name);
     found.push_back(*name);
   }
   if (!any_gap || found.size() < 2) return false;
+  // The table has a value for each position, the heading only the first.
+  for (const std::string& name : found) {
+    if (!gaps_.contains(name)) values_.erase(name);
+  }
   columns_ = std::move(found);
   return true;
 }
@@ -145,6 +152,17 @@ bool PagePositions::take_row(const PageLine& line) {
     put(columns_[i], {line.number, columns_[i], {line.tokens[words + i].text}});
   }
   return true;
+}
+
+void PagePositions::take_gaps(const PageLine& line) {
+  const std::vector<PageToken> t = with_ranges(line.tokens);
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+    const std::string name = t[i].text == "=" ? variable_name(t[i - 1].text) : std::string();
+    if (!gaps_.contains(name)) continue;
+    Values values{line.number, name, {}};
+    while (i + 1 < t.size() && t[i + 1].is_number) values.numbers.push_back(t[++i].text);
+    if (values.numbers.size() > 1) put(name, std::move(values));
+  }
 }
 
 void PagePositions::put(const std::string& quantity, Values values) {
@@ -163,6 +181,15 @@ void PagePositions::put(const std::string& quantity, Values values) {
     values_.try_emplace("F-Number", of_f);
     if (&of_f != &values) known_f->second = std::move(values);
     return;
+  }
+  // The second block of positions begins with the distance of the object.
+  if ((quantity == "d0" || quantity == "Magnification") && !values_.contains(quantity)) {
+    std::size_t block = 0;
+    for (const std::string& name : gaps_) {
+      if (const auto known = values_.find(name); known != values_.end())
+        block = std::max(block, known->second.numbers.size());
+    }
+    if (block > 1) values.numbers.insert(values.numbers.begin(), block, "undefined");
   }
   const auto [at, is_new] = values_.try_emplace(quantity, values);
   const bool gap = gaps_.contains(quantity) || quantity == "Bf" || quantity == "d0" || !columns_.empty();
@@ -185,6 +212,16 @@ void PagePositions::put(const std::string& quantity, Values values) {
 
 bool PagePositions::take(const PageLine& line) {
   if (take_names(line) || take_columns(line) || take_row(line)) return true;
+  // "Variable separation / focal length" above a line of numbers.
+  const bool bare = std::ranges::all_of(line.tokens, &PageToken::is_number);
+  if (bare && focal_lengths_follow_) {
+    Values values{line.number, "focal length", {}};
+    for (const PageToken& token : line.tokens) values.numbers.push_back(token.text);
+    put("Focal Length", std::move(values));
+    return true;
+  }
+  focal_lengths_follow_ =
+      line.numbers() == 0 && line.says("length") && line.says("focal") && !line.says("lens surface start group unit");
   const std::vector<PageToken> t = with_ranges(line.tokens);
   std::vector<std::pair<std::string, Values>> found;
   for (std::size_t i = 0; i < t.size();) {
@@ -208,7 +245,11 @@ bool PagePositions::take(const PageLine& line) {
       joined += t[end].text;
       if (name) ++end;
     }
-    for (std::size_t k = i + 1; !name && k < end; ++k) {
+    // "35 mm equivalent focal length" and "focal length of the first group" are other quantities.
+    const std::string all_words = lower(joined);
+    const auto says = [&](const char* word) { return all_words.find(word) != std::string::npos; };
+    const bool other = says("equivalent") || says("group") || says("unit");
+    for (std::size_t k = i + 1; !name && !other && k < end; ++k) {
       joined.clear();
       for (std::size_t m = k; m < end; ++m) joined += t[m].text;
       name = quantity(joined);
@@ -247,12 +288,26 @@ void PagePositions::scale(Positions& positions, const char* from, const char* to
 }
 
 /// A second block of positions may list only the distances that differ.
-void PagePositions::repeat_blocks(std::size_t count) {
+void PagePositions::repeat_blocks(std::size_t& count) {
   std::size_t block = count;
   for (const std::string& gap : gaps_) {
     if (const auto at = values_.find(gap); at != values_.end()) block = std::min(block, at->second.numbers.size());
   }
   if (block < 2 || block == count || count % block != 0) return;
+  // A row that stands twice is no second block.
+  const auto twice = [&](const std::string& gap) {
+    const auto at = values_.find(gap);
+    if (at == values_.end()) return true;
+    const std::vector<std::string>& all = at->second.numbers;
+    return std::equal(all.begin() + static_cast<std::ptrdiff_t>(block), all.end(), all.begin());
+  };
+  if (std::ranges::all_of(gaps_, twice)) {
+    for (const std::string& gap : gaps_) {
+      if (const auto at = values_.find(gap); at != values_.end()) at->second.numbers.resize(block);
+    }
+    count = block;
+    return;
+  }
   for (const std::string& gap : gaps_) {
     const auto at = values_.find(gap);
     if (at == values_.end() || at->second.numbers.size() != block) continue;

@@ -22,6 +22,8 @@ class PagePositions {
 
   /// Takes a line with names and values, with names of positions, or with names of columns; false for other lines.
   bool take(const PageLine& line);
+  /// Takes distances that a row of the table states for each position: "r5 = -87.4 d5 = 1.9, 48.7".
+  void take_gaps(const PageLine& line);
   /// Moves the values into the rows of Positions.
   void apply(Positions& positions);
 
@@ -36,7 +38,7 @@ class PagePositions {
   bool take_names(const PageLine& line);
   bool take_columns(const PageLine& line);
   bool take_row(const PageLine& line);
-  void repeat_blocks(std::size_t count);
+  void repeat_blocks(std::size_t& count);
   void put(const std::string& quantity, Values values);
   void scale(Positions& positions, const char* from, const char* to, double factor);
 
@@ -44,6 +46,7 @@ class PagePositions {
   Import& in_;
   std::map<std::string, Values> values_;
   std::vector<std::string> names_, columns_;
+  bool focal_lengths_follow_ = false;
 };
 
 }  // namespace petzval::formats_detail

@@ -41,13 +41,20 @@ std::vector<Embodiment> embodiments_of(std::span<const PageLine> lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool head = !surface_columns(lines[i]).empty() && begins_table(lines.subspan(i + 1));
     if (!head && !names_radius(lines[i], 1)) continue;
+    // Words above "r1 = 52.1" may read as a head.
+    if (!head && !all.empty() && i - all.back().head <= 3 && names_radius(lines[i], 1) &&
+        !names_radius(lines[all.back().head], 1)) {
+      all.back().head = i;
+      continue;
+    }
     Embodiment next{0, i, lines.size()};
     if (!all.empty()) {
       // The title of an example, and its focal length, precede its table.
       const std::size_t before = all.back().head;
       next.first = i;
       for (std::size_t k = i; k-- > before + 1;) {
-        const bool title = lines[k].says("example embodiment") && lines[k].tokens.size() <= 8;
+        const bool near = i - k <= 8 && lines[k].says("table");
+        const bool title = (near || lines[k].says("example embodiment")) && lines[k].tokens.size() <= 8;
         if (!title) continue;
         next.first = k;
         break;
@@ -116,9 +123,10 @@ bool PageReader::open_section(const PageLine& line) {
   const bool bracket = line.text.find('[') == line.text.find_first_not_of(" \t");
   if (!line.has_words_only() && !bracket) return false;
   if (!line.numbers() && line.tokens.size() > 12) return false;  // a sentence
-  if (line.says("aspher")) {
+  if (line.says("aspher conic coefficient")) {
     section_ = Section::aspheres;
-  } else if (line.says("condition expression") || (line.says("group unit single") && line.says("data focal"))) {
+  } else if (line.says("condition expression") ||
+             (line.says("group unit single constituent") && line.says("data focal"))) {
     section_ = Section::skipped;
   } else if (line.says("variable various specification general interval spacing") ||
              (line.says("zoom") && line.says("data distance ratio"))) {
@@ -141,13 +149,17 @@ void PageReader::skip(const PageLine& line) {
   };
   bool value = false;
   for (std::size_t i = 1; i < t.size(); ++i) value = value || (t[i].text == "=" && is_term(t[i - 1]));
+  value = value || (line.numbers() > 0 && line.says("conic coefficient") && line.says("="));
   // "Exit pupil position 20.1 30.2", "3 4" at the top of a page.
   const auto is_word = [](const PageToken& x) {
     return std::ranges::count_if(x.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }) > 2 &&
            x.text.find_first_of("0123456789") == x.text.npos && !is_plane_word(x.text);
   };
   const bool named = is_word(t[0]) && (section_ == Section::positions || (t.size() > 1 && is_word(t[1])));
-  const bool top = is_top(line) || is_one_of(t[0].text, "US EP JP DE GB FR CN KR TW WO");
+  const bool condition =
+      t[0].text.size() > 2 && t[0].text[0] == '(' && label_of(t[0].text.substr(1, t[0].text.size() - 2));
+  const bool top = condition || is_one_of(t[0].text, "position positions") || is_top(line) ||
+                   is_one_of(t[0].text, "US EP JP DE GB FR CN KR TW WO");
   const bool suspect = coefficient || (numbers && !named && !top) || (value && section_ == Section::aspheres);
   if (!table_.is_empty() && section_ != Section::skipped && suspect && !line.says("continued")) {
     in_.must_be(line.number, "line", line.said(),
@@ -176,6 +188,7 @@ void PageReader::take(const PageLine& line) {
   }
   if (section_ <= Section::rows && table_.take_named(line)) {
     section_ = Section::rows;
+    values_->take_gaps(line);
     return in_.limit(table_.rows().size());
   }
   if (!table_.is_empty() && section_ != Section::skipped && section_ != Section::positions &&
@@ -210,8 +223,7 @@ void PageReader::collect_gaps() {
 
 void PageReader::say_skipped() {
   if (skipped_.empty()) return;
-  const std::string more = std::to_string(skipped_.size() - 1) + " lines more, up to line " +
-                           std::to_string(skipped_.back()->number) + ", are skipped";
+  const std::string more = "more lines, up to line " + std::to_string(skipped_.back()->number) + ", are skipped";
   in_.warn(skipped_.front()->number, "text",
            skipped_.front()->said() + (skipped_.size() > 1 ? " and " + more : " is skipped"));
   in_.lens.imported->title = std::string(beginning(trimmed(skipped_.front()->text), 200));
@@ -237,9 +249,11 @@ void PageReader::build() {
     row.thickness.number = surfaces[i].thickness;
     if (surfaces[i].semi_diameter) row.diameter.number = 2 * *surfaces[i].semi_diameter;
     const bool last = i + 1 == rows.size();
+    // The back focus of a page may count from the lens in front of a cover glass.
+    const bool cover = last && rows.size() > 2 && surfaces[i].radius == 0 && surfaces[i - 1].radius == 0;
     // "Bf" in the last row, or nothing: the value of the page.
     const std::string name = !rows[i].variable.empty() ? rows[i].variable : "Bf";
-    if (!rows[i].variable.empty() || (last && surfaces[i].thickness == 0)) {
+    if (!rows[i].variable.empty() || (last && !cover && surfaces[i].thickness == 0)) {
       row.thickness = {{}, at(name) || !last ? at(name) : at("Bf")};
       if (!row.thickness.variable && !last) {
         in_.must_be(rows[i].line, "thickness", in_quotes(name),

@@ -74,7 +74,7 @@ struct Named {
 
 Named named_at(const std::vector<PageToken>& t, std::size_t i) {
   std::string name = lower(t[i].text);
-  std::erase_if(name, [](char c) { return std::string_view("'*()").find(c) != std::string_view::npos; });
+  std::erase_if(name, [](char c) { return std::string_view("'*()_").find(c) != std::string_view::npos; });
   std::size_t next = i + 1;
   if (next + 1 < t.size() && t[next].is_number && t[next + 1].text == "=") name += t[next++].text;
   const bool equals = next < t.size() && t[next].text == "=";
@@ -155,7 +155,7 @@ PageRow* PageTable::find(int label) {
 void PageTable::set_head(const PageLine& line, std::vector<TableColumn> columns) {
   head_line_ = line.number;
   labelled_ = columns.front().kind == Column::number;
-  if (labelled_) columns.erase(columns.begin());
+  while (!columns.empty() && columns.front().kind == Column::number) columns.erase(columns.begin());
   counted_ = labelled_ || std::ranges::find(columns, Column::number, &TableColumn::kind) != columns.end();
   columns_ = std::move(columns);
   separator_ = ' ';
@@ -195,6 +195,13 @@ PageRow PageTable::take_marks(const PageLine& line, std::size_t from) const {
     const Mark mark = mark_in(cells[at].text);
     const bool plane = is_plane_word(cells[at + 1 < cells.size() ? at + 1 : 0].text);
     const bool short_s = same(cells[at].text, "s") && plane;
+    if (cells[at].text.size() > 2 && cells[at].text.ends_with('*')) {  // "34.3*"
+      const std::string_view value = std::string_view(cells[at].text).substr(0, cells[at].text.size() - 1);
+      if (!number(value) && !is_plane_word(value)) return false;
+      cells[at] = PageToken{std::string(value), number(value).has_value()};
+      row.asphere = true;
+      return false;
+    }
     if (!mark.is_mark && !short_s) return false;
     if (mark.stop || short_s) row.stop = "stop";
     row.asphere = row.asphere || mark.asphere;
@@ -235,8 +242,8 @@ std::vector<PageToken> PageTable::row_tokens(const PageLine& line) const {
   const auto is_name = [](const PageToken& token) {
     const auto letters = std::ranges::count_if(token.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; });
     return letters > 2 && !is_plane_word(token.text) && !is_stop_word(token.text) && !is_asphere_mark(token.text) &&
-           !is_image(token.text) && variable_name(token.text).empty() && token.text[0] != '(' &&
-           lower(token.text).find("variable") == std::string::npos;
+           !is_image(token.text) && variable_name(token.text).empty() && token.text.find('(') == std::string::npos &&
+           token.text.find('*') == std::string::npos && lower(token.text).find("variable") == std::string::npos;
   };
   while (t.size() > 2 && is_name(t[1])) {
     const bool lens = same(t[1].text, "lens") && label_of(t[2].text);
@@ -284,6 +291,7 @@ bool PageTable::take_row(const PageLine& line) {
     return t.is_number || is_plane_word(t.text) || is_meant_as_number(t.text) || !variable_name(t.text).empty();
   };
   if (std::ranges::none_of(row.cells, is_data)) return false;
+  if (!row.stop.empty() && columns_[0].kind == Column::radius && is_none(row.cells[0].text)) row.cells[0] = {"inf"};
   // The object: "0 inf inf", "0 inf D0", "0 inf 1000.0".
   const bool object = rows_.empty() && label == 0 && row.stop.empty() && row.cells.size() == 2;
   if (object && is_plane_word(row.cells[0].text)) {
@@ -324,31 +332,48 @@ bool PageTable::is_other_row(const PageLine& line) const {
 bool PageTable::is_printed() const {
   const auto printed = [&](const PageRow& row) {
     const bool short_air = labelled_ && separator_ == ' ' && row.cells.size() + 2 <= columns_.size() &&
-                           is_aperture(columns_.back().kind) && row.cells.size() > 2;
+                           (is_aperture(columns_.back().kind) || columns_.back().kind == Column::left_out) &&
+                           row.cells.size() > 2;
     return short_air || (&row != &rows_.back() && !row.variable.empty());
   };
-  return std::ranges::any_of(rows_, printed);
+  return object_distance_ || std::ranges::any_of(rows_, printed);
 }
 
-/// Takes the name of a thickness that varies: "(variable)", "D5", "d 5", "2.10 (variable)".
+/// Takes the name of a thickness that varies: "(variable)", "D5", "d 5", "2.10 (variable)", "d5 (variable)", "variable
+/// (A)".
 void PageTable::name_gap(PageRow& row) const {
-  const std::string own = row.label ? 'd' + std::to_string(*row.label) : std::string();
   auto& cells = row.cells;
+  const auto varies = [](const PageToken& cell) {
+    std::string word = lower(cell.text);
+    std::erase_if(word, [](char c) { return std::string_view("().").find(c) != std::string_view::npos; });
+    return !cell.is_number && (word.find("variable") != std::string::npos || word == "var");
+  };
+  const auto name_of = [](std::string_view word) {
+    const std::size_t open = word.find('('), close = word.find(')');
+    const std::string_view inner = open < close && close != word.npos ? word.substr(open + 1, close - open - 1) : word;
+    const bool letter = inner.size() == 1 && inner[0] >= 'A' && inner[0] <= 'Z' && inner.size() != word.size();
+    return letter ? std::string(inner) : variable_name(inner);
+  };
+  const auto erase = [&](std::size_t at) { cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(at)); };
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i].is_number) continue;
     const bool apart = i + 1 < cells.size() && is_one_of(cells[i].text, "d dd") && cells[i + 1].is_number;
+    const bool variable = varies(cells[i]);
     std::string name = variable_name(apart ? cells[i].text + cells[i + 1].text : cells[i].text);
-    const std::string all = lower(cells[i].text);
-    if (name.empty() && (all.find("variable") != std::string::npos || all == "var" || all == "var.")) {
-      const std::string before = all.substr(0, all.find('('));
-      name = variable_name(before).empty() ? own : variable_name(before);
+    if (name.empty() && variable) name = name_of(cells[i].text.substr(0, cells[i].text.find('(')));
+    if (name.empty() && variable) name = name_of(cells[i].text);
+    if (name.empty() && !variable) continue;
+    if (apart) erase(i + 1);
+    // "d5 (variable)", "variable (d5)".
+    const std::string behind = i + 1 < cells.size() && cells[i + 1].text[0] == '(' ? name_of(cells[i + 1].text) : "";
+    if (i + 1 < cells.size() && (varies(cells[i + 1]) || (variable && !behind.empty()))) {
+      if (name.empty()) name = behind;
+      erase(i + 1);
     }
-    if (name.empty() || cells[i].is_number) continue;
-    row.variable = name;
-    if (apart) cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    row.variable = name.empty() && row.label ? 'd' + std::to_string(*row.label) : name;
     cells[i] = {"(variable)"};
-    const bool behind_number = i == find(Column::thickness) + 1 && cells[i - 1].is_number;
-    if (behind_number && all.find("variable") != std::string::npos) {
-      cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(i));
+    if (variable && i == find(Column::thickness) + 1 && cells[i - 1].is_number) {
+      erase(i);
       cells[i - 1] = {"(variable)"};
     }
     return;
@@ -388,9 +413,17 @@ bool PageTable::take_named(const PageLine& line) {
       PageRow* own = gap && !name.number.empty() ? find(label_of(name.number).value_or(-1)) : nullptr;
       PageRow& row = own ? *own : rows_.back();
       PageToken& cell = row.cells[gap ? 1 : name.kind[0] == 'n' ? 2 : 3];
-      if (cell.text != "-") return found;  // a second value: a table of positions
+      if (cell.text != "-") {
+        if (!gap) apart_line_ = line.number;
+        return found;  // a second value: a table of positions
+      }
       cell = value;
-      if (gap && !value.is_number && !is_meant_as_number(value.text)) {
+      const std::size_t next = name.value + 1;
+      const bool list = next < t.size() && (t[next].is_number || is_one_of(t[next].text, "- to"));
+      if (gap && list) {
+        row.variable = 'd' + name.number;
+        cell = {"(variable)"};
+      } else if (gap && !value.is_number && !is_meant_as_number(value.text)) {
         const bool varies = lower(value.text).find("variable") != std::string::npos;
         row.variable = varies ? 'd' + name.number : variable_name(value.text);
         if (!row.variable.empty()) cell = {"(variable)"};
@@ -523,6 +556,10 @@ void PageTable::complete(PageRow& row, bool last, const Import& in) {
 }
 
 void PageTable::complete(const Import& in) {
+  // Lists of radii and of indices: the first index stands behind the last radius.
+  if (named_ && !rows_.empty() && number(rows_.back().cells[2].text).value_or(1) > 1.1) apart_line_ = rows_.back().line;
+  if (apart_line_ > 0)
+    in.must_be(apart_line_, "index", "apart from its radius", "in the line of its radius, or the next");
   for (PageRow& row : rows_) {
     const std::optional<int> before = &row == &rows_.front() ? std::optional(0) : (&row - 1)->label;
     if (named_ && row.label != before.value_or(0) + 1) {

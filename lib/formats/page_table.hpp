@@ -82,6 +82,7 @@ class PageTable {
   std::vector<PageRow> rows_;
   std::optional<double> object_distance_;
   int head_line_ = 0;
+  int apart_line_ = 0;  ///< line of an index that is not with its radius; 0 if absent
   bool labelled_ = false, named_ = false;
   bool counted_ = false;  ///< true if the head has a column of labels
   char separator_ = ' ';

@@ -2,7 +2,7 @@
 #include "page_text.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <utility>
 
 #include "core/text.hpp"
@@ -12,32 +12,92 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// Signs of printed pages and their form in ASCII. Superscripts follow a "^".
-constexpr std::array<std::pair<std::string_view, std::string_view>, 40> signs = {{
-    {"\u00b0", " "},  {"\u2212", "-"},  {"\u2010", "-"},   {"\u2011", "-"},  {"\u2013", "-"},  {"\u2014", "-"},
-    {"\uff0d", "-"},  {"\u00a0", " "},  {"\u2002", " "},   {"\u2003", " "},  {"\u2007", " "},  {"\u2009", " "},
-    {"\u202f", " "},  {"\u3000", " "},  {"\u221e", "inf"}, {"\u00d7", "x"},  {"\u2032", "'"},  {"\u2019", "'"},
-    {"\uff1d", "="},  {"\uff5e", " "},  {"\u301c", " "},   {"\u2026", " "},  {"\uff0a", "*"},  {"\u2217", "*"},
-    {"\u207b", "^-"}, {"\u2070", "^0"}, {"\u00b9", "^1"},  {"\u00b2", "^2"}, {"\u00b3", "^3"}, {"\u2074", "^4"},
-    {"\u00b7", "x"},  {"<sup>", "^"},   {"</sup>", ""},    {"^{", "^"},      {"}", ""},        {"\u2075", "^5"},
-    {"\u2076", "^6"}, {"\u2077", "^7"}, {"\u2078", "^8"},  {"\u2079", "^9"},
-}};
+/// Signs of printed pages and their form in ASCII. Superscripts follow a "^". The Patent Office writes signs as words
+/// between points.
+constexpr std::pair<std::string_view, std::string_view> signs[] = {
+    {"\u00b0", " "},
+    {"\u2212", "-"},
+    {"\u2010", "-"},
+    {"\u2011", "-"},
+    {"\u2013", "-"},
+    {"\u2014", "-"},
+    {"\uff0d", "-"},
+    {"\u00a0", " "},
+    {"\u2002", " "},
+    {"\u2003", " "},
+    {"\u2007", " "},
+    {"\u2009", " "},
+    {"\u202f", " "},
+    {"\u3000", " "},
+    {"\u221e", "inf"},
+    {"\u00d7", "x"},
+    {"\u00b7", "x"},
+    {"\u2032", "'"},
+    {"\u2019", "'"},
+    {"\uff1d", "="},
+    {"\uff5e", " "},
+    {"\u301c", " "},
+    {"\u2026", " "},
+    {"\uff0a", "*"},
+    {"\u2217", "*"},
+    {"\u207b", "^-"},
+    {"\u2070", "^0"},
+    {"\u00b9", "^1"},
+    {"\u00b2", "^2"},
+    {"\u00b3", "^3"},
+    {"\u2074", "^4"},
+    {"\u2075", "^5"},
+    {"\u2076", "^6"},
+    {"\u2077", "^7"},
+    {"\u2078", "^8"},
+    {"\u2079", "^9"},
+    {"\u2080", "0"},
+    {"\u2081", "1"},
+    {"\u2082", "2"},
+    {"\u2083", "3"},
+    {"\u2084", "4"},
+    {"\u2085", "5"},
+    {"\u2086", "6"},
+    {"\u2087", "7"},
+    {"\u2088", "8"},
+    {"\u2089", "9"},
+    {"<sup>", "^"},
+    {"</sup>", ""},
+    {"<sub>", ""},
+    {"</sub>", ""},
+    {"^{", "^"},
+    {"_{", ""},
+    {"}", ""},
+    {".sub.", ""},
+    {".sup.", "^"},
+    {".infin.", "inf"},
+    {".nu.", "\u03bd"},
+    {".omega.", "\u03c9"},
+    {".kappa.", "\u03ba"},
+    {".beta.", "\u03b2"},
+    {".theta.", "\u03b8"},
+    {".degree.", " "},
+    {".times.", "x"},
+    {".about.", " "},
+    {"~", " "},
+};
 
 std::string in_ascii(std::string_view line) {
   std::string result;
   for (std::size_t i = 0; i < line.size();) {
-    const bool ascii = static_cast<unsigned char>(line[i]) < 0x80 && line[i] != '<' && line[i] != '^' && line[i] != '}';
+    const bool ascii = static_cast<unsigned char>(line[i]) < 0x80 &&
+                       std::string_view("<^_}.~").find(line[i]) == std::string_view::npos;
     const auto sign =
-        ascii ? signs.end()
+        ascii ? std::end(signs)
               : std::ranges::find_if(signs, [&](const auto& s) { return line.substr(i).starts_with(s.first); });
-    if (sign != signs.end()) {
+    if (sign != std::end(signs)) {
       const bool again = sign->second.size() > 1 && sign->second[0] == '^' && i > 0 &&
                          result.find('^') != result.npos &&
                          result.find_first_not_of("0123456789-", result.rfind('^') + 1) == result.npos;
       result += again ? sign->second.substr(1) : sign->second;
       i += sign->first.size();
     } else {
-      result += line[i] == '~' ? ' ' : line[i];
+      result += line[i];
       ++i;
     }
   }
@@ -164,6 +224,10 @@ std::vector<PageToken> tokens_of(std::string_view text, bool decimal_commas) {
     }
     std::string_view word = text.substr(i, end - i);
     i = end;
+    if (word.size() > 2 && word.starts_with('[') && word.ends_with(']') && number(word.substr(1, word.size() - 2))) {
+      tokens.push_back({std::string(word.substr(1, word.size() - 2)), true});  // "[34.3]"
+      continue;
+    }
     if (word.size() > 1 && (word.ends_with(',') || word.ends_with(';'))) word.remove_suffix(1);
     // "K:" before a value.
     if (word.size() > 1 && word.ends_with(':')) {

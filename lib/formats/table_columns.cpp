@@ -21,29 +21,30 @@ struct Heads {
 constexpr Heads all_heads[] = {
     {Column::number,
      "# no nr num number row m s s# si sn sno i id surf surf# surface surface# surfaceno surfacenumber"},
-    {Column::number, "fl\u00e4che fl\u00e4chennummer"},
+    {Column::number, "facenumber faceno planeno lenssurface fl\u00e4che fl\u00e4chennummer"},
     {Column::left_out, "focallength lensfocallength \u03b8gf \u03b8gfj pgf"},
-    {Column::radius, "r ri rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
+    {Column::radius, "r ri rj rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
     {Column::curvature, "c cv cuy curv curvature"},
     {Column::thickness,
-     "d di t th thi thick thickness dist distance gap dicke abstand space spacing separation interval "
+     "d di dj t th thi thick thickness dist distance gap dicke abstand space spacing separation interval "
      "thicknessdistance "
      "axialdistance axialthickness surfacedistance surfaceinterval surfaceseparation surfacespacing onaxisdistance "
-     "onaxisspacing "
+     "onaxisspacing onaxissurfacespacing "
      "axialspacing airgap thicknessorairgap"},
     {Column::gap_before, "gapbefore gapinfront thicknessbefore distancebefore axpos"},
-    {Column::index, "n nd ndj nj brechzahl index ior refindex refractiveindex indexofrefraction"},
+    {Column::index, "n nd ndi ndj nj brechzahl index ior refindex refractiveindex indexofrefraction"},
     {Column::abbe,
-     "v vd vdj vj v# vno vnumber nu nud abbe abbeno abbenumber abbezahl abv abbe'snumber abbevd dispersion"},
+     "v vd vdi vdj vj v# vno vnumber nu nud abbe abbeno abbe# abbenumber abbezahl abv abbe'snumber abbevd dispersion"},
     {Column::glass, "glass glas glassname glasstype material mat mat'l matl medium"},
     {Column::catalogue, "catalog catalogue maker manufacturer"},
     {Column::semi_diameter,
-     "semi sd sa effectiveradius effradius semidia semidiam semidiameter semiap semiaperture clearsemidiameter "
+     "semi sd sa er effectiveradius effradius semidia semidiam semidiameter semiap semiaperture clearsemidiameter "
      "clearsemiaperture clearsemidia clearradius apertureradius housingradius halfdiameter halfaperture"},
     {Column::diameter,
-     "dia diam diameter ca clearaperture cleardiameter cleardia effectivediameter aperturediameter "
+     "outerdiameter lensdiameter effectivebeamdiameter dia diam diameter ca clearaperture cleardiameter cleardia "
+     "effectivediameter aperturediameter "
      "fulldiameter"},
-    {Column::aperture, "ap aperture clear"},
+    {Column::aperture, "ap ea aperture clear effectiveaperture"},
     {Column::conic, "k cc kappa conic conicconstant"},
     {Column::stop, "stop sto"},
     {Column::comment, "comment description element label name note notes remark remarks surfacetype type"},
@@ -144,7 +145,8 @@ std::optional<TableColumn> column_of(std::string_view head) {
       // "n(d)" and "n (587.6 nm)"; an index of another line is another column.
       const auto nm = number(bracket.substr(0, bracket.find_first_not_of("0123456789.")));
       const bool d_line = bracket == "d" || (nm && std::abs((*nm < 1 ? 1000 * *nm : *nm) - 587.56) < 0.1);
-      if (!d_line) return {};
+      const bool word = bracket.find_first_of("0123456789") == bracket.npos && bracket.size() > 2;
+      if (!d_line && !word) return {};
     } else if (!kind) {
       name += bracket;  // "A(4)"; "Ri (radius of curvature)" says its name twice
     }
@@ -181,7 +183,7 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
       // Single letters are separate heads: "V D".
       const std::string_view next = cells[i + more];
       const bool in_brackets = next.starts_with('(') || next.starts_with('[');
-      if (!in_brackets && (next.size() < 2 || cells[i].size() < 2)) break;
+      if (!in_brackets && next != "#" && (next.size() < 2 || cells[i].size() < 2)) break;
       joined += ' ' + std::string(cells[i + more]);
       if (const auto known = column_of(joined)) {
         column = *known;
@@ -193,7 +195,10 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
     const auto sign = by_blanks && i < cells.size() && cells[i].size() <= 4 && column.name.size() > 4
                           ? column_of(cells[i])
                           : std::nullopt;
-    if (sign && sign->kind == column.kind && column.kind <= Column::abbe && column.kind > Column::number) ++i;
+    if (sign && sign->kind == column.kind && column.kind <= Column::abbe && column.kind > Column::number) {
+      ++i;
+      if (i < cells.size() && cells[i].starts_with('(')) ++i;  // the unit
+    }
     columns.push_back(std::move(column));
   }
   // Two heads are ambiguous: "index" is a row number if there is also "nd", and a second "d" ("r d n D") is a diameter.

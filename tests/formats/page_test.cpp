@@ -204,6 +204,80 @@ TEST(Page, AsphericDataMayBeATableOfRowsOrOfColumns) {
   EXPECT_EQ(difference(read_page(start + "r1:\nK = 0.5\nA4 = 1E-6\nA6 = 2E-9\n"), lens), "");
 }
 
+TEST(Page, LinesMayBePrintedInOtherForms) {
+  const Prescription lens = read_page(small);
+  const std::pair<const char*, const char*> forms[] = {
+      {"f = 52.4", "f = 52.4mm"},
+      {"f = 52.4", "Unit mm\nF = 52.4"},
+      {"f = 52.4", "Focal length f (mm) 52.4"},
+      {"No. r d nd vd", "Surface number r d nd vd"},
+      {"No. r d nd vd", "S No. Ri (radius of curvature) Di Ndj (refractive index) \u03bddj"},
+      {"No. r d nd vd", "Fl\u00e4che Radius Dicke Brechzahl Abbe-Zahl"},
+      {"No. r d nd vd", "Surface # Curvature radius r (mm) Surface distance d Index Abbe #"},
+      {"No. r d nd vd\n", "No. r d nd vd\n0 Object inf inf\n"},
+      {"1* 60.0", "*1) 60.0"},
+      {"1* 60.0", "L1 1 60.0*"},
+      {"1* 60.0", "1 Lens 1 60.0 (ASP)"},
+      {"64.2\n", "64.2 L1\n"},
+      {"64.2\n", "64.2\nSecond lens group\n"},
+      {"64.2\n", "64.2\nUS 9,256,059 B2\n23 24\n-continued\n"},
+      {"3 (stop) inf", "3(St) inf"},
+      {"3 (stop) inf", "3 inf(stop)"},
+      {"3 (stop) inf", "S inf"},
+      {"47.5\n", "47.5\nImage plane inf\n"},
+      {"Aspherical data\n", "Conic and other coefficients\n"},
+      {"Surface 1\n", "First surface\n"},
+      {"Surface 1\n", "(1st surface)\n"},
+      {"Surface 1\n", "[Aspherical data of surface 1]\n"},
+      {"Surface 1\nK", "NO.1; K"},
+      {"Surface 1\nK", "R1 K"},
+      {"K = 0.5 A4", "Conic constant = 0.5 \u03b14"},
+      {"K = 0.5", "KA = 1.5"},
+      {"2.0E-09\n", "2.0E-09\n(1) f1/f = 1.2\nf1 = 22.1 f2 = -11.0\nF/2.8\n"},
+  };
+  for (const auto& [old, form] : forms) {
+    const std::string text = with(small, old, form);
+    SCOPED_TRACE(form);
+    if (const std::string refusal = refused_page(text); refusal != "no error") {
+      ADD_FAILURE() << refusal;
+      continue;
+    }
+    EXPECT_EQ(difference(read_page(text), lens), "");
+  }
+}
+
+TEST(Page, ConicsFollowTheFormula) {
+  for (const char* formula : {"1-K\u00b7h2/r2", "1\u2212K\u00d7c2\u00d7h2", "1-KC2Y2"}) {
+    EXPECT_DOUBLE_EQ(
+        conic(with(small, "Aspherical data\n", "Aspherical data\nX = ch2/(1+(" + std::string(formula) + ")^1/2)\n")),
+        -0.5);
+  }
+  const std::string text = with(small, "A4 = 1.0E-06 A6 = 2.0E-09", "A2 = 1E-06 A3 = 2E-09");
+  const Prescription lens = read_page(with(text, "Aspherical data\n", "Aspherical data\nX = ch2/2+A2h4+A3h6\n"));
+  EXPECT_EQ(lens.surfaces[0].aspheric, (std::vector<AsphereTerm>{{4, 1e-6}, {6, 2e-9}}));
+}
+
+/// A lens of two positions, with radii by name.
+const std::string zoom =
+    "f = 31.9\nr1 = 50 d1 = 4 n1 = 1.5168 v1 = 64\nr2 = -50 d2 = variable\nr3 = 80 (stop) d3 = 3 n2 = 1.5168 v2 = 64\n"
+    "r4 = -80 d4 = 20\n";
+
+TEST(Page, PositionsMayBePrintedInOtherForms) {
+  const Prescription truth = read_page(zoom + "d2 5 10\n");
+  ASSERT_EQ(truth.configurations.size(), 2u);
+  EXPECT_TRUE(truth.surfaces[2].stop);
+  for (const char* form : {"d2 = 5~10\n", "d2 = 5 to 10\n", "d2 = 5 - 10\n", "d2 = 5, 10\n", "Wide Tele\nD2 5 10\n",
+                           "Position Focal length d2\nWide 31.9 5\nTele 33.3 10\n"}) {
+    SCOPED_TRACE(form);
+    ASSERT_EQ(refused_page(zoom + form), "no error");
+    EXPECT_EQ(difference(read_page(zoom + form), truth), "");
+  }
+  EXPECT_EQ(difference(read_page(with(zoom, "d2 = variable", "d2 = 5~10")), truth), "");
+  const Prescription close = read_page(zoom + "d2 5 10\nClose\nd0 300 300\nd2 6 12\n");
+  EXPECT_EQ(close.configurations.size(), 4u);
+  EXPECT_DOUBLE_EQ(close.configurations[3].subject_distance_mm.value(), 300);
+}
+
 TEST(Page, FaultsAreRefusedWithLineAndCell) {
   expect_tokens(refused_page(with(small, "60.0", "6O.0")), {"x:4", "\"6O.0\""});
   expect_tokens(refused_page(with(small, "1.5168", "l.5168")), {"x:4", "\"l.5168\""});
