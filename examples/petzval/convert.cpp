@@ -245,10 +245,10 @@ int commands::convert(int argc, char** argv) {
   Options options;
   bool refused = false;
   examples::App app(
-      "Converts a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, OpticalBench "
-      "and other tables, lentil and optiland JSON; detected by content) to the format of OUT's extension. Warnings "
-      "name the lines of IN that were not taken literally. The exit status is 0 if OUT was written, 3 if --strict "
-      "prevented the conversion.",
+      "Converts a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, LensHH "
+      ".lhlt, crayg .fx, OpticalBench and other tables, lentil, optiland and DeepLens JSON; detected by content) to "
+      "the format of OUT's extension. Warnings name the lines of IN that were not taken literally. The exit status is "
+      "0 if OUT was written, 3 if --strict prevented the conversion.",
       "petzval convert");
   examples::add_lens(app, options.in, "IN", "lens to convert")->required();
   examples::add_out_file(app, options.out, "file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr",

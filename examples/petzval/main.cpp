@@ -71,7 +71,9 @@ Events (view --replay FILE): an object with scene (or image, depth, deep), lens,
 Rays (trace --table FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
 Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
 
-Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.
+Lenses: data/README.md describes the JSON format. All commands also read .zmx, .seq, .len, FlareSim .lens, LensHH
+  .lhlt, crayg .fx, OpticalBench and other tables, and JSON of lentil, optiland and DeepLens. petzval convert writes
+  other formats.
 
 Reports (--json, and JSON files in --out DIR): lib/docs/reports.md and picture_reports.md list the keys.
 

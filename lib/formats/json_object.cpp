@@ -69,6 +69,33 @@ JsonObject JsonObject::object(const char* key) const {
   return {*value, path + '.' + key, in, tree};
 }
 
+const nlohmann::json& JsonObject::list(const char* key) const {
+  const nlohmann::json* value = find(key);
+  if (!value || !value->is_array()) refuse(key, value ? "no list" : "missing", "a list");
+  return *value;
+}
+
+JsonObject JsonObject::entry(const char* list, std::size_t i) const {
+  return entry(std::string(list) + '[' + std::to_string(i) + ']', json.at(list).at(i));
+}
+
+std::vector<AsphereTerm> JsonObject::terms(const char* key, int first, int step) const {
+  std::vector<AsphereTerm> result;
+  if (!find(key)) return result;
+  int order = first - step;
+  for (const nlohmann::json& value : list(key)) {
+    if (!value.is_number()) refuse(key, shown(value), "numbers");
+    const double coefficient = value.get<double>();
+    order += step;
+    if (coefficient == 0) continue;
+    if (order < 2 || order > 40) {
+      refuse(key, to_text(coefficient) + " of order " + std::to_string(order), "of order 2 to 40");
+    }
+    result.push_back({order, coefficient});
+  }
+  return result;
+}
+
 void JsonObject::name_others(std::initializer_list<std::string_view> used) const {
   for (const auto& [key, value] : json.items()) {
     const bool says_nothing = value.is_null() || (value.is_structured() && value.empty()) || value == false;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "import.hpp"
 #include "io/json.hpp"
@@ -34,6 +36,10 @@ struct JsonObject {
   std::string text(const char* key) const;  ///< empty if absent or null
   bool flag(const char* key) const;         ///< false if absent
   JsonObject object(const char* key) const;
+  const nlohmann::json& list(const char* key) const;
+  JsonObject entry(const char* list, std::size_t i) const;  ///< an object of a list
+  /// A list of aspheric coefficients of orders first, first + step, ..., without the zeros; empty if absent.
+  std::vector<AsphereTerm> terms(const char* key, int first, int step) const;
   /// Warns of each key that is not `used` and has a value.
   void name_others(std::initializer_list<std::string_view> used) const;
   [[noreturn]] void refuse(const char* key, const std::string& value, const std::string& rule) const;

@@ -19,8 +19,8 @@ namespace {
 using namespace formats_detail;
 
 constexpr const char* rule =
-    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
-    "surfaces, a page of a patent, lentil or optiland JSON";
+    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, crayg .fx, LensHH .lhlt, an "
+    "OpticalBench table, a table of surfaces, a page of a patent, or JSON of lentil, optiland or DeepLens";
 
 /// The formats in the order in which they are tried; each accepts only files that it recognises with certainty.
 constexpr std::array formats{
@@ -29,6 +29,9 @@ constexpr std::array formats{
     Format{"opticalbench", is_opticalbench, read_opticalbench},
     Format{"optiland", is_optiland, read_optiland},
     Format{"lentil", is_lentil, read_lentil},
+    Format{"lenshh", is_lenshh, read_lenshh},
+    Format{"deeplens", is_deeplens, read_deeplens},
+    Format{"crayg", is_crayg, read_crayg},
     Format{"flaresim", is_flaresim, read_flaresim},
     Format{"codev", is_codev, read_codev},
     Format{"patent page", is_page, read_page},

@@ -18,16 +18,6 @@
 namespace petzval::formats_detail {
 namespace {
 
-const nlohmann::json& list(const JsonObject& object, const char* key) {
-  const nlohmann::json* value = object.find(key);
-  if (!value || !value->is_array()) object.refuse(key, value ? "no list" : "missing", "a list");
-  return *value;
-}
-
-JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
-  return object.entry(std::string(key) + '[' + std::to_string(i) + ']', object.json.at(key).at(i));
-}
-
 /// Measurements on refractiveindex.info that the table "misc" contains.
 struct Measurement {
   std::string_view material, source, glass;
@@ -51,7 +41,6 @@ class OptilandReader {
   void surfaces(const JsonObject& group);
   double z_of(const JsonObject& surface) const;
   void shape(const JsonObject& geometry, SurfaceRow& row);
-  void terms(const JsonObject& geometry, int first, int step, SurfaceRow& row);
   Medium medium(const JsonObject& material);
   void rim(const JsonObject& surface, SurfaceRow& row);
 
@@ -74,10 +63,10 @@ void OptilandReader::aperture(const JsonObject& o) {
 }
 
 void OptilandReader::fields(const JsonObject& o) {
-  const nlohmann::json& all = list(o, "fields");
+  const nlohmann::json& all = o.list("fields");
   std::string kind = o.find("field_type") && o.find("field_type")->is_string() ? o.text("field_type") : "";
   for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 1000); ++i) {
-    const JsonObject f = entry(o, "fields", i);
+    const JsonObject f = o.entry("fields", i);
     if (kind.empty()) kind = f.text("field_type");
     // Vignetting factors compress the pupil.
     in_.lens.design.fields.push_back({.x = f.number("x").value_or(0),
@@ -107,10 +96,10 @@ struct LengthUnit {
 constexpr LengthUnit lengths_in_nm[] = {{"", 1e3}, {"um", 1e3}, {"nm", 1}, {"mm", 1e6}, {"cm", 1e7}, {"m", 1e9}};
 
 void OptilandReader::wavelengths(const JsonObject& o) {
-  const nlohmann::json& all = list(o, "wavelengths");
+  const nlohmann::json& all = o.list("wavelengths");
   int primaries = 0;
   for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 1000); ++i) {
-    const JsonObject w = entry(o, "wavelengths", i);
+    const JsonObject w = o.entry("wavelengths", i);
     const std::string unit = w.text("unit");
     const auto known = std::ranges::find(lengths_in_nm, unit, &LengthUnit::name);
     if (known == std::end(lengths_in_nm)) w.refuse("unit", io_detail::in_quotes(unit), "nm, um, mm, cm or m");
@@ -133,30 +122,15 @@ double OptilandReader::z_of(const JsonObject& surface) const {
   return cs.needed("z");
 }
 
-void OptilandReader::terms(const JsonObject& geometry, int first, int step, SurfaceRow& row) {
-  if (!geometry.find("coefficients")) return;
-  const nlohmann::json& all = list(geometry, "coefficients");
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!all[i].is_number()) geometry.refuse("coefficients", shown(all[i]), "numbers");
-    const double coefficient = all[i].get<double>();
-    const int order = first + step * static_cast<int>(i);
-    if (coefficient == 0) continue;
-    if (order < 2 || order > 40) {
-      geometry.refuse("coefficients", to_text(coefficient) + " of order " + std::to_string(order), "of order 2 to 40");
-    }
-    row.aspheric.push_back({order, coefficient});
-  }
-}
-
 void OptilandReader::shape(const JsonObject& geometry, SurfaceRow& row) {
   const std::string type = geometry.text("type");
   const double radius = geometry.number("radius").value_or(std::numeric_limits<double>::infinity());
   row.radius = std::isinf(radius) ? 0 : radius;
   row.conic = geometry.number("conic").value_or(0);
   if (type == "EvenAsphere") {
-    terms(geometry, 2, 2, row);
+    row.aspheric = geometry.terms("coefficients", 2, 2);
   } else if (type == "OddAsphere") {
-    terms(geometry, 1, 1, row);
+    row.aspheric = geometry.terms("coefficients", 1, 1);
   } else if (type != "Plane" && type != "StandardGeometry") {
     geometry.refuse("type", io_detail::in_quotes(type), "Plane, StandardGeometry, EvenAsphere or OddAsphere");
   }
@@ -218,22 +192,22 @@ void OptilandReader::rim(const JsonObject& surface, SurfaceRow& row) {
 }
 
 void OptilandReader::surfaces(const JsonObject& group) {
-  const nlohmann::json& all = list(group, "surfaces");
+  const nlohmann::json& all = group.list("surfaces");
   in_.limit(all.size(), "surfaces", 2);
   if (all.size() < 3)
     group.refuse("surfaces", std::to_string(all.size()) + " surfaces", "an object, a lens and an image");
-  const JsonObject object = entry(group, "surfaces", 0);
+  const JsonObject object = group.entry("surfaces", 0);
   double z = z_of(object);
   in_.lens.object_space = medium(object.object("material_post"));
-  const double first_z = z_of(entry(group, "surfaces", 1));
+  const double first_z = z_of(group.entry("surfaces", 1));
   in_.lens.design.object_distance_mm = std::isinf(z) ? std::numeric_limits<double>::infinity() : first_z - z;
   Medium before = in_.lens.object_space;
   z = first_z;
   for (std::size_t i = 1; i + 1 < all.size(); ++i) {
-    const JsonObject s = entry(group, "surfaces", i);
+    const JsonObject s = group.entry("surfaces", i);
     SurfaceRow row;
     shape(s.object("geometry"), row);
-    const double next = z_of(entry(group, "surfaces", i + 1));
+    const double next = z_of(group.entry("surfaces", i + 1));
     row.thickness = next - z;
     z = next;
     row.stop = s.flag("is_stop");

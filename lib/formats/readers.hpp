@@ -20,9 +20,21 @@ struct Format {
 bool is_codev(std::string_view text);
 void read_codev(std::string_view text, Import& in);
 
+/// A .fx of crayg begins with [Metadata].
+bool is_crayg(std::string_view text);
+void read_crayg(std::string_view text, Import& in);
+
+/// JSON of DeepLens has surfaces with d_next.
+bool is_deeplens(std::string_view text);
+void read_deeplens(std::string_view text, Import& in);
+
 /// A .lens of FlareSim has a line "surfaces:" between keys and rows.
 bool is_flaresim(std::string_view text);
 void read_flaresim(std::string_view text, Import& in);
+
+/// A .lhlt has a FormatVersion and Surfaces.
+bool is_lenshh(std::string_view text);
+void read_lenshh(std::string_view text, Import& in);
 
 /// JSON of lentil has "optical-elements-...".
 bool is_lentil(std::string_view text);

@@ -38,6 +38,9 @@ struct ReadOptions {
 ///     patent page           a printed page with a table of surfaces, aspheric data and positions (data/README.md)
 ///     table                 rows of numbers, with or without headings: from renderers, patents, CSV (data/README.md)
 ///     lentil, optiland      JSON; from a lentil database, the lens of ReadOptions::entry
+///     lenshh                .lhlt (JSON)
+///     deeplens              JSON
+///     crayg                 .fx
 ///
 /// Text may be UTF-8, UTF-16 or Latin-1, with any line ends. Lengths become millimetres. Each command of the file is
 /// applied, or listed with its line in Prescription::imported->warnings, or the file is refused: a lens never differs

@@ -200,7 +200,7 @@ struct ImportWarning {
 
 /// The file of another program from which a prescription was read.
 struct FileOrigin {
-  std::string format{};      ///< "zemax", "codev", "oslo", "opticalbench", "flaresim", "table", "lentil", "optiland"
+  std::string format{};      ///< the name of the format in the list of read_lens(): "zemax", "codev", "lentil", ...
   std::string file{};        ///< file name without folders
   std::string units = "mm";  ///< unit of length in the file: "mm", "cm", "in" or "m"; a prescription is in mm
   std::string title{};
