@@ -20,7 +20,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::size_t most_columns = 100;
+constexpr std::size_t most_columns = 1000;
 
 /// The cells of a line without the empty cells at its end; at most one more cell than allowed. A comment after "//"
 /// ends the line, unless "//" is part of a word ("https://...").

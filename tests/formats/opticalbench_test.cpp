@@ -109,6 +109,21 @@ const std::string plain =
     "[descriptive data]\ntitle\tplain\n[variable distances]\nFocal Length\t100\nF-Number\t5\nd2\t97\n[lens data]\n"
     "1\tAS\t1\t\t20\n2\t50\t5\t1.5\t30\t60\n3\tInfinity\td2\t\t30\n[aspherical data]\n2\t50\t0\t1\t2\t3\t4\t5\n";
 
+// A continuous zoom states hundreds of positions.
+TEST(OpticalBench, EightHundredPositionsAreRead) {
+  std::string focal_lengths = "Focal Length", f_numbers = "F-Number", distances = "d2";
+  for (int i = 0; i < 800; ++i) {
+    focal_lengths += '\t' + std::to_string(100 + i);
+    f_numbers += "\t5", distances += '\t' + std::to_string(97 + i);
+  }
+  const std::string text =
+      with(with(with(plain, "Focal Length\t100", focal_lengths), "F-Number\t5", f_numbers), "d2\t97", distances);
+  const auto lens = parse_lens(text, "x.txt");
+  ASSERT_EQ(lens.configurations.size(), 800u);
+  EXPECT_EQ(lens.configurations[799].focal_length_mm, 899);
+  EXPECT_EQ(configured(lens, 799).surfaces[2].thickness, 97 + 799);
+}
+
 std::vector<int> orders(const std::string& constant) {
   const auto lens = parse_lens(with(plain, "[variable", "[constants]\n" + constant + "\n[variable"), "x.txt");
   std::vector<int> result;
@@ -223,8 +238,8 @@ TEST(OpticalBench, InvalidInputIsRefusedWithItsLine) {
   expect_tokens(refusal("[variable", "[constants]\nAsphericalOddCount\t1.5\n[variable"),
                 {"x.txt", "line 4", "AsphericalOddCount", 1.5});
   expect_error([] { parse_lens("[lens data]\n", "x.txt"); }, {"x.txt", "rows"});
-  expect_error([] { parse_lens("[lens data]\n1" + std::string(200, '\t') + "5\n", "x.txt"); },
-               {"x.txt", "line 2", "line", 101});
+  expect_error([] { parse_lens("[lens data]\n1" + std::string(2000, '\t') + "5\n", "x.txt"); },
+               {"x.txt", "line 2", "line", 1001});
 }
 
 }  // namespace opticalbench_test
