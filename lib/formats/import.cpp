@@ -22,19 +22,24 @@ using glass_detail::same_bare;
 constexpr std::size_t most_warnings = 1000;
 
 /// Names of materials in other programs, and in the tables.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 17> other_names = {{
     {"SILICA", "F_SILICA"},
     {"FUSEDSILICA", "F_SILICA"},
     {"FSILICA", "F_SILICA"},
     {"SIO2", "F_SILICA"},
+    {"FUSED", "F_SILICA"},
+    {"C79-80", "F_SILICA"},  // Corning HPFS 7980
     {"MGF2", "MGF2_O"},
     {"SAPPHIRE", "SAPPHIRE_O"},
+    {"AL2O3", "SAPPHIRE_O"},
     {"POLYCARB", "POLYCARBONATE"},
     {"POLYSTYR", "POLYSTYRENE"},
     {"ACRYLIC", "PMMA"},
     {"E48R", "ZEONEX_E48R"},
     {"SEAWATER", "WATER"},
     {"CAFL", "CAF2"},
+    {"ZNS_IR", "ZNS"},
+    {"ZNS_BROAD", "ZNS"},
 }};
 
 }  // namespace
@@ -160,6 +165,11 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
     return medium;
   }
 
+  // The fictitious glass of OpticStudio's catalogue MISC, for examples.
+  if (same(name, "N15")) {
+    warn(line, name, "is in no glass table; an index of 1.5 at all wavelengths is taken");
+    return {.nd = 1.5, .vd = 0};
+  }
   if (nd && *nd > 0 && *nd <= 5) {
     std::string message = "is in no glass table; n_d " + to_text(*nd, 6) +
                           (vd ? " and V_d " + to_text(*vd, 4) + " of the file are" : " of the file is") + " taken";
@@ -171,8 +181,11 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
   }
 
   const std::string similar = glass_detail::similar_names(glasses(), name);
+  std::string list;
+  for (const std::string& c : catalogues) append(list, ", ", c);
   refuse(line, name, "a name in no glass table, without an index in the file",
          "a glass of the tables or of a catalogue (--glasses FILE, an .agf or .yml)" +
+             (list.empty() ? std::string() : "; the file names the catalogues " + list) +
              (similar.empty() ? std::string() : "; similar names: " + similar));
 }
 

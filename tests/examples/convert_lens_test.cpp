@@ -148,13 +148,13 @@ SURF 1
   STOP
   CURV 0.01
   DISZ 4
-  GLAS GERMANIUM 0 0 1.5 40
+  GLAS CHALCOGEN 0 0 1.5 40
 SURF 2
   CURV 0.007
   DISZ 90
 SURF 3
 )");
-  write("infrared.agf", "NM GERMANIUM 2 000000 4.003 0 0 0\nCD 14.0 0.2 0.3 24 0 0 0 0 0 0\nLD 3 12\n");
+  write("infrared.agf", "NM CHALCOGEN 2 000000 4.003 0 0 0\nCD 14.0 0.2 0.3 24 0 0 0 0 0 0\nLD 3 12\n");
   const auto expect_both = [&](const std::string& program, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), path("ge.zmx"));
     const auto without = run(program, arguments);

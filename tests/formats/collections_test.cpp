@@ -112,7 +112,7 @@ TEST(LensHh, RefusesUnknownValues) {
   EXPECT_TRUE(positioned(refused("{\"Value\": 9}", "{\"Type\": \"NA\", \"Value\": 9}"), "x", {"Type", "\"NA\""}));
   EXPECT_TRUE(positioned(refused("ObjectAngle", "ImageHeight"), "x", {"file.FieldType", "\"ImageHeight\""}));
   EXPECT_TRUE(positioned(refused("[\"SCHOTT\"]", "[5]"), "x", {"file.GlassCatalogs", "5"}));
-  expect_tokens(refused("N-BK7", "N-XYZ7"), {"x", "N-XYZ7", "--glasses"});
+  expect_tokens(refused("N-BK7", "N-XYZ7"), {"x", "N-XYZ7", "--glasses", "catalogues SCHOTT"});
   const std::size_t list = lenshh.find("\"Surfaces\": [") + 13;
   expect_tokens(refusal(lenshh.substr(0, list) + "1, 2], \"Fields\": [], \"Wavelengths\": []}"), {"Surfaces", 2});
   expect_tokens(warning(with(lenshh, "\"Pickups\": []", "\"Pickups\": [1]"), "file.Pickups"), {"values"});

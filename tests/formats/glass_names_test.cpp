@@ -117,6 +117,9 @@ TEST(GlassNames, ZemaxGlassOfAnotherCatalogue_IsAWarningThatNamesBoth) {
     return warning(with(double_gauss("SCHOTT MISC OHARA", dummy, dummy), "GLAS F2", "GLAS " + name), name);
   };
   expect_tokens(other("SILICA"), {"F_SILICA", "misc"});
+  expect_tokens(other("C79-80"), {"F_SILICA", "misc"});
+  expect_tokens(other("ZNS_IR"), {"ZNS", "infrared"});
+  expect_tokens(other("N15"), {1.5});
   expect_tokens(other("L-TIM28_MOLD"), {"L-TIM28", "ohara"});
 }
 
@@ -263,7 +266,7 @@ std::string infrared_lens(const std::string& glass) {
 
 TEST_F(InfraredGlass, WithoutIndexAtTheDLine_IsReadAtThePrimaryWavelength) {
   const std::string text = infrared_lens("GERMANIUM 0 0 1.5 40 0 0 0 0 0 0");
-  expect_tokens(refusal(text), {"--glasses"});
+  expect_tokens(refusal(with(text, "GERMANIUM", "CHALCOGEN")), {"--glasses", "INFRARED, SCHOTT"});
   const GlassCatalogue all = glasses(germanium_agf);
   const Prescription p = petzval::parse_lens(text, "x", {.glasses = &all});
   EXPECT_FALSE(speaks_of(p, "GERMANIUM"));
@@ -280,6 +283,14 @@ TEST_F(InfraredGlass, WithoutIndexAtTheDLine_IsReadAtThePrimaryWavelength) {
   const auto zmx = petzval::format_zemax(p, &all);
   EXPECT_NE(zmx.text.find("GLAS GERMANIUM 0 0 "), std::string::npos) << zmx.text;
   EXPECT_EQ(petzval::parse_lens(zmx.text, "x", {.glasses = &all}).surfaces, p.surfaces);
+}
+
+// By the formula of Burnett 2016: 4.003556 at 10.6 um.
+TEST(GlassNames, InfraredGlassOfTheTables_IsReadAtThePrimaryWavelength) {
+  const Prescription p = read(infrared_lens("GERMANIUM 0 0 1.5 40 0 0 0 0 0 0"));
+  const double n = 4.003556, power = (n - 1) * (0.01 - 0.007 + (n - 1) / n * 4 * 0.01 * 0.007);
+  EXPECT_NEAR(focal_length(p, 10600), 1 / power, 1e-4);
+  EXPECT_FALSE(speaks_of(p, "GERMANIUM"));
 }
 
 TEST_F(InfraredGlass, WithAConstantIndex_KeepsItWithoutItsCatalogue) {

@@ -287,6 +287,7 @@ TEST(Clamp, EveryLensOfTheData_CompilesFrom360To830Nm) {
 TEST(Clamp, IndexError_BoundsTheDistanceFromTheClampedFormula) {
   double worst = 0;
   for (const Glass& glass : petzval::glass_tables().glasses()) {
+    if (glass.catalogue == "infrared") continue;  // opaque, or a small part of the visible range
     const Lens lens = compile(window(glass), std::array{360.0, 830.0}, {.clamp_wavelengths = true});
     for (const double nm : steps(360, 830, 1500)) {
       const double clamped = std::clamp(nm, glass.shortest_nm, glass.longest_nm);
