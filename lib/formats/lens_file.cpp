@@ -2,6 +2,8 @@
 #include "petzval/formats/lens_file.hpp"
 
 #include <array>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "complete.hpp"
@@ -38,28 +40,55 @@ constexpr std::array formats{
     Format{"table", is_table, read_table},
 };
 
-/// True for a line of dashes and colons, the ruler of columns in BEAM FOUR.
+/// True for a line of dashes and colons, the ruler of columns in BEAM FOUR. Points mark decimals.
 bool is_ruler(std::string_view line) {
   return line.size() >= 8 && line.find(':') != std::string_view::npos &&
-         line.find_first_not_of("-_: \t") == std::string_view::npos;
+         line.find_first_not_of("-_:. \t") == std::string_view::npos;
 }
 
-/// Throws Error for lenses of programs that cannot be read, and names the format in which the program can export them.
+/// A kind of file that is not read, and the beginnings of two lines that it contains.
+struct OtherKind {
+  const char *first, *second, *kind, *rule;
+};
+constexpr OtherKind other_kinds[] = {
+    {"SUT ", "CUY ", "an OpTaliX lens (.otx)", "exported as .seq or .zmx"},
+    {"NM ", "CD ", "a glass catalogue (.agf)", "a lens; --glasses names glass catalogues"},
+    {"const LENS_DATA", "surfaces:", "a lens of LensVisualizer (TypeScript)", "typed as a table (data/README.md)"},
+    {"const LENS_DATA", "\"surfaces\":", "a lens of LensVisualizer (TypeScript)", "typed as a table (data/README.md)"}};
+
+/// Throws Error for files that cannot be read, and names the format in which their program can export them.
 void refuse_other_programs(std::string_view text, const std::string& where) {
   const std::string_view start = trimmed(text);
   if (start.starts_with('{') && text.find("\"optical_model\"") != std::string_view::npos) {
     throw Error(where + ": is a ray-optics model (.roa); must be exported from ray-optics as .seq or .zmx");
   }
   std::string_view first;
-  for (Lines lines(text); lines.next() && lines.number() <= 8;) {
+  std::array<int, std::size(other_kinds)> found{};
+  for (Lines lines(text); lines.next();) {
     const std::string_view line = trimmed(lines.text());
     if (first.empty()) first = line;
-    const auto head = words(first, 3);
-    const bool counts = head.size() > 1 && number(head[0]) && lower(head[1]).starts_with("surf");
-    if (counts && is_ruler(line)) {
-      throw Error(where + ": is a table of BEAM FOUR (.OPT); must be exported as .zmx, or typed as a table");
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (line.starts_with(other_kinds[i].first)) found[i] |= 1;
+      if (line.starts_with(other_kinds[i].second)) found[i] |= 2;
+      if (found[i] == 3) throw Error(where + ": is " + other_kinds[i].kind + "; must be " + other_kinds[i].rule);
     }
+    if (lines.number() > 8 || !is_ruler(line)) continue;
+    const auto head = words(first, 3);
+    const bool counts = head.size() > 1 && number(head[0]) &&
+                        (lower(head[1]).starts_with("surf") || lower(head[1]).starts_with("entr"));
+    if (counts) throw Error(where + ": is a table of BEAM FOUR (.OPT); must be exported as .zmx, or typed as a table");
   }
+}
+
+/// Throws Error for JSON that has neither the format nor a key of a known program.
+void refuse_unknown_json(const std::string& text, const std::string& where) {
+  if (text.find("petzval-") != std::string::npos || text.find("\"format\"") != std::string::npos) return;
+  const io_detail::JsonTree tree(text, where, [](std::string_view path) { return std::string(path); });
+  std::string keys;
+  for (const auto& [key, value] : tree.root().items()) {
+    if (keys.size() < 200) append(keys, ", ", io_detail::in_quotes(key));
+  }
+  throw Error(where + ": is JSON of an unknown program, with the keys " + keys + "; must be " + rule);
 }
 
 void refuse_warnings(const Prescription& lens, const std::string& where) {
@@ -91,6 +120,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
   if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + rule);
   // Probably a damaged file of this library: the messages of its parser name line and column.
   if (const std::string_view start = trimmed(text); start.starts_with('{')) {
+    refuse_unknown_json(text, where);
     return parse_prescription(text, where);
   }
   std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));

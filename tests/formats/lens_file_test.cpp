@@ -123,6 +123,12 @@ TEST(LensFile, OtherFilesAreRefusedByKind) {
       "  3 surfaces  SIMPLE.OPT\n  index   Z     Curv    Diam   Mir/Lens\n--------:-----:-------:------:---------:\n"
       "   1.0  : 0.0 : 0.02  : 10 : Lens\n");
   expect_tokens(opt, {"BEAM FOUR"});
+  expect_tokens(refusal("3  entries  PRISM.OPT\n X   Z   pitch\n---:---.-:-----\n"), {"BEAM FOUR"});
+  expect_tokens(refusal("OpTaliX\nREM 1 lens\nSUR 1\nSUT S\nCUY 0.02\nTHI 4\n"), {"x", "OpTaliX", ".seq", ".zmx"});
+  expect_tokens(refusal("CC glasses\nNM X1 1 517642 1.517 64.2 0\nCD 2.27 0 0\n"), {"x", ".agf", "--glasses"});
+  expect_tokens(refusal("const LENS_DATA = {\n  key: \"a\",\n  surfaces: [\n  ]\n};\n"),
+                {"x", "LensVisualizer", "table"});
+  expect_tokens(refusal("{\"spacing\": [1, 2], \"radii\": 5}"), {"x", "JSON", "\"radii\"", "\"spacing\"", ".zmx"});
 }
 
 TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
