@@ -25,6 +25,12 @@ constexpr const char* all_columns = "Radius, Thickness, IOR, Housing-Radius, Abb
 constexpr std::array<std::string_view, 4> sections = {"[metadata]", "[surfaces]", "[aspheric coefficients]",
                                                       "[variable distances]"};
 
+/// The texts in front of the first colon and behind it.
+std::pair<std::string_view, std::string_view> split(std::string_view line) {
+  const std::size_t colon = std::min(line.find(':'), line.size());
+  return {trimmed(line.substr(0, colon)), trimmed(line.substr(std::min(colon + 1, line.size())))};
+}
+
 class CraygReader {
  public:
   explicit CraygReader(Import& in) : in_(in) {}
@@ -38,9 +44,8 @@ class CraygReader {
   void distances(std::string_view line);
   std::pair<SurfaceRow&, std::size_t> indexed(std::string_view word);
   double number(std::string_view parameter, std::string_view word) const {
-    const auto value = formats_detail::number(word);
-    if (!value) in_.must_be(line_, parameter, in_quotes(word), "a finite number with a decimal point");
-    return *value;
+    if (const auto value = formats_detail::number(word)) return *value;
+    in_.must_be(line_, parameter, in_quotes(word), "a finite number with a decimal point");
   }
 
   Import& in_;
@@ -49,8 +54,7 @@ class CraygReader {
 };
 
 void CraygReader::metadata(std::string_view line) {
-  const std::size_t colon = std::min(line.find(':'), line.size());
-  const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(std::min(colon + 1, line.size())));
+  const auto [name, value] = split(line);
   if (value.empty()) return;
   if (same(name, "name")) {
     in_.lens.imported->title = std::string(beginning(value, 4096));
@@ -117,24 +121,23 @@ void CraygReader::surface(std::vector<std::string_view> cells, std::string_view 
 
 /// The surface of a number in front of a colon.
 std::pair<SurfaceRow&, std::size_t> CraygReader::indexed(std::string_view word) {
-  const double value = number("surface", trimmed(word));
-  const std::size_t count = in_.lens.surfaces.size();
-  if (!(value >= 0 && value < static_cast<double>(count) && value == std::floor(value))) {
-    in_.must_be(line_, "surface", in_quotes(word), "0 to " + std::to_string(count) + " - 1, a surface above");
+  const double value = number("surface", word);
+  if (!(value >= 0 && value < static_cast<double>(in_.lens.surfaces.size()) && value == std::floor(value))) {
+    in_.must_be(line_, "surface", in_quotes(word), "the number of a row of [Surfaces], from 0");
   }
   return {in_.lens.surfaces[static_cast<std::size_t>(value)], static_cast<std::size_t>(value)};
 }
 
 /// "10: k=-1.2 a4=1e-6 a6=2e-9"
 void CraygReader::asphere(std::string_view line) {
-  const std::size_t colon = std::min(line.find(':'), line.size());
-  auto [row, index] = indexed(line.substr(0, colon));
+  const auto [surface, coefficients] = split(line);
+  auto [row, index] = indexed(surface);
   if (aspheric_lines_[index] == 0) {
     in_.must_be(line_, "surface", std::to_string(index),
                 "a surface with the geometry ASPHERICAL and one line of coefficients");
   }
   aspheric_lines_[index] = 0;
-  for (const std::string_view word : words(line.substr(std::min(colon + 1, line.size())))) {
+  for (const std::string_view word : words(coefficients)) {
     const std::size_t equals = std::min(word.find('='), word.size());
     const std::string name = lower(word.substr(0, equals));
     const double value = number(name, word.substr(std::min(equals + 1, word.size())));
@@ -150,10 +153,10 @@ void CraygReader::asphere(std::string_view line) {
 
 /// "Focal Length Samples: 70 135 200", then "5: 8.78 26.15 32.85" for each surface in front of a variable distance.
 void CraygReader::distances(std::string_view line) {
-  const std::size_t colon = std::min(line.find(':'), line.size());
-  const auto samples = words(line.substr(std::min(colon + 1, line.size())));
+  const auto [surface, numbers] = split(line);
+  const auto samples = words(numbers);
   auto& list = in_.lens.configurations;
-  if (same(line.substr(0, colon), "focal length samples")) {
+  if (same(surface, "focal length samples")) {
     in_.limit(samples.size(), "samples");
     list.clear();
     for (const std::string_view word : samples) {
@@ -163,7 +166,7 @@ void CraygReader::distances(std::string_view line) {
     }
     return;
   }
-  auto [row, index] = indexed(line.substr(0, colon));
+  auto [row, index] = indexed(surface);
   if (samples.empty() || samples.size() != list.size()) {
     in_.must_be(line_, "distances", std::to_string(samples.size()) + " numbers",
                 std::to_string(list.size()) + ", one for each of the focal length samples");

@@ -52,7 +52,7 @@ SurfaceRow DeeplensReader::row(const JsonObject& s, const Medium& before) {
   const std::string type = s.text("type");
   SurfaceRow row{.thickness = s.needed("d_next"), .medium = before, .stop = type == "Aperture" || type == "Stop"};
   if (!row.stop && type != "Plane" && type != "Spheric" && type != "Aspheric") {
-    s.refuse("type", shown(*s.find("type")), "Aperture, Stop, Plane, Spheric or Aspheric");
+    s.refuse("type", io_detail::in_quotes(type), "Aperture, Stop, Plane, Spheric or Aspheric");
   }
   if (type == "Spheric" || type == "Aspheric") {
     const auto radius = s.number("roc");

@@ -22,17 +22,21 @@ class LenshhReader {
   void read(std::string_view text);
 
  private:
-  void aperture(const JsonObject& o);
-  void fields(const JsonObject& root);
-  void wavelengths(const JsonObject& root);
+  void design(const JsonObject& root);
   void surfaces(const JsonObject& root);
   SurfaceRow row(const JsonObject& s, const Medium& before);
-  void rims(const JsonObject& s, const Medium& before, SurfaceRow& row) const;
   Medium medium(const JsonObject& s);
 
   Import& in_;
   std::vector<std::string> catalogues_;
 };
+
+/// A word of a list; the first if the key is absent.
+std::string word_of(const JsonObject& o, const char* key, std::string_view list, const char* rule) {
+  const std::string word = o.text(key);
+  if (!word.empty() && !is_one_of(word, list)) o.refuse(key, shown(*o.find(key)), rule);
+  return word.empty() ? std::string(list.substr(0, list.find(' '))) : word;
+}
 
 /// The distance to the next surface; infinite above 1e18, as in the program.
 double thickness_of(const JsonObject& s) {
@@ -40,31 +44,24 @@ double thickness_of(const JsonObject& s) {
   return std::abs(thickness) > 1e18 ? infinity : thickness;
 }
 
-void LenshhReader::aperture(const JsonObject& o) {
-  const std::string type = o.text("Type");
-  if (!type.empty() && type != "EPD" && type != "FNumber") o.refuse("Type", shown(*o.find("Type")), "EPD or FNumber");
-  in_.lens.design.aperture = DesignAperture{
-      type == "FNumber" ? ApertureSetting::f_number : ApertureSetting::entrance_pupil_diameter, o.needed("Value")};
-}
-
-void LenshhReader::fields(const JsonObject& root) {
-  const std::string kind = root.text("FieldType");
-  if (!kind.empty() && kind != "ObjectAngle" && kind != "ObjectHeight") {
-    root.refuse("FieldType", shown(*root.find("FieldType")), "ObjectAngle or ObjectHeight");
-  }
-  in_.lens.design.field_kind = kind == "ObjectHeight" ? FieldKind::object_height : FieldKind::angle_deg;
+void LenshhReader::design(const JsonObject& root) {
+  DesignData& design = in_.lens.design;
+  const JsonObject aperture = root.object("Aperture");
+  design.aperture = DesignAperture{word_of(aperture, "Type", "EPD FNumber", "EPD or FNumber") == "EPD"
+                                       ? ApertureSetting::entrance_pupil_diameter
+                                       : ApertureSetting::f_number,
+                                   aperture.needed("Value")};
+  const bool angles =
+      word_of(root, "FieldType", "ObjectAngle ObjectHeight", "ObjectAngle or ObjectHeight") == "ObjectAngle";
+  design.field_kind = angles ? FieldKind::angle_deg : FieldKind::object_height;
   for (std::size_t i = 0; i < std::min<std::size_t>(root.list("Fields").size(), 1000); ++i) {
     const JsonObject f = root.entry("Fields", i);
-    in_.lens.design.fields.push_back({.y = f.number("Y").value_or(0), .weight = f.number("Weight").value_or(1)});
+    design.fields.push_back({.y = f.number("Y").value_or(0), .weight = f.number("Weight").value_or(1)});
   }
-}
-
-void LenshhReader::wavelengths(const JsonObject& root) {
   for (std::size_t i = 0; i < std::min<std::size_t>(root.list("Wavelengths").size(), 1000); ++i) {
     const JsonObject w = root.entry("Wavelengths", i);
-    const double nm = *formats_detail::number(to_text(w.needed("Value") * 1e3, 12));
-    in_.lens.design.wavelengths.push_back({nm, w.number("Weight").value_or(1)});
-    if (w.flag("IsPrimary")) in_.lens.design.primary_wavelength = i;
+    design.wavelengths.push_back({*number(to_text(w.needed("Value") * 1e3, 12)), w.number("Weight").value_or(1)});
+    if (w.flag("IsPrimary")) design.primary_wavelength = i;
   }
 }
 
@@ -75,21 +72,8 @@ Medium LenshhReader::medium(const JsonObject& s) {
   return in_.glass(0, name, catalogues_, {}, {});
 }
 
-/// A floating aperture and a fixed semi-diameter at the stop clip. Other semi-diameters clip at elements only.
-void LenshhReader::rims(const JsonObject& s, const Medium& before, SurfaceRow& row) const {
-  const double rim = s.number("SemiDiameter").value_or(0), floating = s.number("FloatingApertureRadius").value_or(0);
-  const bool fixed = s.text("SemiDiameterMode") == "Fixed", dummy = !row.mirror && row.medium == before;
-  if (rim > 0 && (row.stop ? fixed : !dummy)) row.semi_diameter = rim;
-  if (floating > 0) row.semi_diameter = floating;
-  const double hole = std::max(s.number("InnerRadius").value_or(0), s.number("ObscurationRadius").value_or(0));
-  if (hole > 0) row.obscuration_semi_diameter = hole;
-}
-
 SurfaceRow LenshhReader::row(const JsonObject& s, const Medium& before) {
-  const std::string type = s.text("Type");
-  if (!type.empty() && type != "Standard" && type != "EvenAsphere") {
-    s.refuse("Type", shown(*s.find("Type")), "Standard or EvenAsphere");
-  }
+  const std::string type = word_of(s, "Type", "Standard EvenAsphere", "Standard or EvenAsphere");
   SurfaceRow row{.radius = s.number("Radius").value_or(infinity), .thickness = thickness_of(s)};
   if (std::isinf(row.radius)) row.radius = 0;
   if (std::isinf(row.thickness)) s.refuse("Thickness", shown(*s.find("Thickness")), "finite behind a surface");
@@ -98,7 +82,13 @@ SurfaceRow LenshhReader::row(const JsonObject& s, const Medium& before) {
   row.stop = s.flag("IsStop");
   row.mirror = same(s.text("Material"), "MIRROR");
   row.medium = row.mirror ? before : medium(s);
-  rims(s, before, row);
+  // A floating aperture and a fixed semi-diameter at the stop clip. Other semi-diameters clip at elements only.
+  const double rim = s.number("SemiDiameter").value_or(0), floating = s.number("FloatingApertureRadius").value_or(0);
+  const bool fixed = s.text("SemiDiameterMode") == "Fixed", element = row.mirror || !(row.medium == before);
+  if (rim > 0 && (row.stop ? fixed : element)) row.semi_diameter = rim;
+  if (floating > 0) row.semi_diameter = floating;
+  const double hole = std::max(s.number("InnerRadius").value_or(0), s.number("ObscurationRadius").value_or(0));
+  if (hole > 0) row.obscuration_semi_diameter = hole;
   if (const std::string comment = s.text("Comment"); !comment.empty()) row.comment = comment;
   // Flags and bounds of the optimiser do not change the lens.
   s.name_others({"Index",
@@ -151,9 +141,7 @@ void LenshhReader::read(std::string_view text) {
   if (root.needed("FormatVersion") != 1) root.refuse("FormatVersion", shown(*root.find("FormatVersion")), "1");
   in_.lens.imported->title = root.text("Title");
   for (const char* key : {"Designer", "Notes"}) in_.note(root.text(key));
-  aperture(root.object("Aperture"));
-  fields(root);
-  wavelengths(root);
+  design(root);
   if (root.find("GlassCatalogs")) {
     for (const nlohmann::json& name : root.list("GlassCatalogs")) {
       if (!name.is_string()) root.refuse("GlassCatalogs", shown(name), "names");

@@ -185,6 +185,7 @@ TEST(DeepLens, RefusesAndReportsOtherValues) {
   EXPECT_TRUE(positioned(refused("\"d_next\": 0.9", "\"d_last\": 0.9"), "x", {"surfaces[1].d_next", "missing"}));
   EXPECT_TRUE(positioned(refused("[0.0, 1e-3", "[0.0, null"), "x", {"surfaces[1].ai", "null"}));
   EXPECT_TRUE(positioned(refused("\"c\": 0.4, ", ""), "x", {"surfaces[1].c", "missing"}));
+  expect_tokens(refused("\"type\": \"Spheric\", ", ""), {"surfaces[2].type", "\"\""});
   expect_tokens(refused("okp4", "okp9"), {"x", "okp9", "--glasses"});
   expect_tokens(refusal(R"({"d_next": 0, "surfaces": []})"), {"x", "surfaces", "at least one"});
   expect_tokens(warning(with(deeplens, "6.0", "6.5"), "file.d_sensor"), {6.5, 6});

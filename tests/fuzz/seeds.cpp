@@ -95,11 +95,12 @@ Texts flaresim_texts() { return {seed("flaresim.lens")}; }
 Texts oslo_texts() { return {sample("oslo_words.len")}; }
 Texts opticalbench_texts() { return {sample("opticalbench_macro.txt"), sample("opticalbench_zoom.txt")}; }
 Texts lentil_texts() { return {seed("lentil.json")}; }
+Texts collection_texts() { return {seed("lenshh.lhlt"), seed("deeplens.json"), seed("crayg.fx")}; }
 Texts optiland_texts() { return {seed("optiland.json")}; }
 Texts all_lens_texts() {
   Texts result;
   for (const auto& texts : {own_json, zemax_texts, codev_texts, tables, typed_tables, flaresim_texts, oslo_texts,
-                            opticalbench_texts, lentil_texts, optiland_texts}) {
+                            opticalbench_texts, lentil_texts, optiland_texts, collection_texts}) {
     const Texts some = texts();
     result.insert(result.end(), some.begin(), some.begin() + 1);
   }

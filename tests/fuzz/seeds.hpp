@@ -18,6 +18,7 @@ std::vector<std::string> oslo_texts();
 std::vector<std::string> opticalbench_texts();
 std::vector<std::string> tables();
 std::vector<std::string> lentil_texts();
+std::vector<std::string> collection_texts();
 std::vector<std::string> optiland_texts();
 std::vector<std::string> all_lens_texts();
 std::vector<std::string> agf_texts();

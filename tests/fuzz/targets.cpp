@@ -36,6 +36,7 @@ std::span<const Target> targets() {
       Target{"table", "lens_file", fuzz_lens_file, tables, 4096, 600},
       Target{"lentil", "lens_file", fuzz_lens_file, lentil_texts, 4096, 600},
       Target{"optiland", "lens_file", fuzz_lens_file, optiland_texts, 4096, 600},
+      Target{"collections", "lens_file", fuzz_lens_file, collection_texts, 4096, 600},
       Target{"lens_format", "lens_file", fuzz_lens_file, all_lens_texts, 8192, 1000},
       Target{"agf", "glass_file", fuzz_glass_file, agf_texts, 8192, 600},
       Target{"rii", "glass_file", fuzz_glass_file, rii_texts, 4096, 600},

@@ -34,13 +34,10 @@ struct ReadOptions {
 ///     codev                 .seq
 ///     oslo                  .len
 ///     opticalbench          the tables of Photons to Photos, .txt
-///     flaresim              .lens
+///     flaresim, crayg       .lens, .fx
 ///     patent page           a printed page with a table of surfaces, aspheric data and positions (data/README.md)
 ///     table                 rows of numbers, with or without headings: from renderers, patents, CSV (data/README.md)
-///     lentil, optiland      JSON; from a lentil database, the lens of ReadOptions::entry
-///     lenshh                .lhlt (JSON)
-///     deeplens              JSON
-///     crayg                 .fx
+///     lentil, optiland, deeplens, lenshh  JSON (lenshh: .lhlt); from a lentil database, the lens of ReadOptions::entry
 ///
 /// Text may be UTF-8, UTF-16 or Latin-1, with any line ends. Lengths become millimetres. Each command of the file is
 /// applied, or listed with its line in Prescription::imported->warnings, or the file is refused: a lens never differs
