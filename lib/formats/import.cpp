@@ -22,7 +22,7 @@ using glass_detail::same_bare;
 constexpr std::size_t most_warnings = 1000;
 
 /// Names of materials in other programs, and in the tables.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 17> other_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> other_names = {{
     {"SILICA", "F_SILICA"},
     {"FUSEDSILICA", "F_SILICA"},
     {"FSILICA", "F_SILICA"},
@@ -38,8 +38,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> other_na
     {"E48R", "ZEONEX_E48R"},
     {"SEAWATER", "WATER"},
     {"CAFL", "CAF2"},
-    {"ZNS_IR", "ZNS"},
-    {"ZNS_BROAD", "ZNS"},
 }};
 
 }  // namespace
