@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/text.hpp"
@@ -86,6 +87,28 @@ Named named_at(const std::vector<PageToken>& t, std::size_t i) {
   // Without "=", a row of positions has several numbers.
   if (!equals && value + 1 < t.size() && t[value + 1].is_number) return {};
   return {name.substr(0, digits), name.substr(digits), value};
+}
+
+/// True if a cell can stand in a column.
+bool fits(Column kind, const PageToken& cell, bool last) {
+  if (is_none(cell.text)) return true;
+  const auto value = number(cell.text);
+  const auto within = [&](double least, double most) { return value && *value >= least && *value <= most; };
+  switch (kind) {
+    case Column::radius:
+    case Column::curvature: return value || is_plane_word(cell.text);
+    case Column::thickness:
+    case Column::gap_before: return value || cell.text == "(variable)" || (last && is_plane_word(cell.text));
+    case Column::index: return same(cell.text, "air") || value == 0.0 || within(0.999, 1.001) || within(1.3, 2.7);
+    case Column::abbe: return value == 0.0 || within(8, 120);
+    case Column::glass: return !value;
+    case Column::semi_diameter:
+    case Column::diameter:
+    case Column::aperture: return within(0, HUGE_VAL);
+    case Column::conic:
+    case Column::term: return value.has_value();
+    default: return true;
+  }
 }
 
 }  // namespace
@@ -449,107 +472,59 @@ bool PageTable::take_pair(const std::string& word) {
   return true;
 }
 
-/// True if the cells of a row can stand in these columns.
-bool PageTable::fits(const PageRow& row, const std::vector<std::size_t>& columns, bool last) const {
-  if (row.cells.size() != columns.size()) return false;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const PageToken& cell = row.cells[i];
-    const Column kind = columns_[columns[i]].kind;
-    const auto value = number(cell.text);
-    if (is_none(cell.text)) continue;
-    switch (kind) {
-      case Column::radius:
-      case Column::curvature:
-        if (!value && !is_plane_word(cell.text)) return false;
-        break;
-      case Column::thickness:
-      case Column::gap_before:
-        if (!value && cell.text != "(variable)" && !(last && is_plane_word(cell.text))) return false;
-        break;
-      case Column::index:
-        if (!same(cell.text, "air") &&
-            !(value && (*value == 0 || std::abs(*value - 1) < 1e-3 || (*value >= 1.3 && *value <= 2.7))))
-          return false;
-        break;
-      case Column::abbe:
-        if (!value || (*value != 0 && !(*value >= 8 && *value <= 120))) return false;
-        break;
-      case Column::glass:
-        if (value) return false;
-        break;
-      case Column::semi_diameter:
-      case Column::diameter:
-      case Column::aperture:
-        if (!value || *value < 0) return false;
-        break;
-      case Column::conic:
-      case Column::term:
-        if (!value) return false;
-        break;
-      default: break;
+/// Fills the columns of a row from its cells. Air lacks the columns of glass, or has the index 1; the last row may lack
+/// its thickness. False if the cells fit no form of row.
+bool PageTable::fill(PageRow& row, std::vector<PageToken> cells, bool last) const {
+  const auto is_gap = [](Column c) { return c == Column::thickness || c == Column::gap_before; };
+  const auto is_air = [](const PageToken& c) {
+    return std::abs(number(c.text).value_or(9) - 1) < 1e-3 || same(c.text, "air");
+  };
+  const bool air = std::ranges::any_of(cells, is_air);
+  const std::function<bool(Column)> forms[] = {
+      [](Column) { return true; },
+      [](Column c) { return !is_of_glass(c); },
+      [&](Column c) { return !is_of_glass(c) || (air && c == Column::index); },
+      [](Column c) { return !is_of_glass(c) || c == Column::glass; },
+      [](Column c) { return !is_of_glass(c) && !is_aperture(c); },
+      [&](Column c) { return !is_of_glass(c) && !(last && is_gap(c)); },
+      [&](Column c) { return !is_of_glass(c) && !(last && is_gap(c)) && !is_aperture(c); },
+  };
+  for (const auto& has : forms) {
+    std::vector<PageToken> filled;
+    std::size_t taken = 0;
+    for (const TableColumn& column : columns_) {
+      if (!has(column.kind)) {
+        filled.push_back({"-"});
+      } else if (taken < cells.size() && fits(column.kind, cells[taken], last)) {
+        filled.push_back(cells[taken++]);
+      }
     }
+    if (taken != cells.size() || filled.size() != columns_.size()) continue;
+    row.cells = std::move(filled);
+    return true;
   }
-  return true;
+  return false;
 }
 
-void PageTable::complete(PageRow& row, bool last, const Import& in) {
-  using List = std::vector<std::size_t>;
-  const auto columns_if = [&](auto wanted) {
-    List list;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (wanted(columns_[i].kind)) list.push_back(i);
-    }
-    return list;
-  };
-  const auto gap = [](Column c) { return c == Column::thickness || c == Column::gap_before; };
-  const auto of_surface = [&](Column c) { return !is_of_glass(c); };
-  std::vector<List> forms{columns_if([](Column) { return true; }), columns_if(of_surface),
-                          columns_if([&](Column c) { return of_surface(c) || c == Column::index; }),
-                          columns_if([&](Column c) { return of_surface(c) || c == Column::glass; }),
-                          columns_if([&](Column c) { return of_surface(c) && !is_aperture(c); })};
-  if (last) forms.push_back(columns_if([&](Column c) { return of_surface(c) && !gap(c); }));
-  if (last) forms.push_back(columns_if([&](Column c) { return of_surface(c) && !gap(c) && !is_aperture(c); }));
-  const std::size_t radius = std::min(find(Column::radius), find(Column::curvature));
-  const auto fill = [&](const PageRow& from) {
-    const List* found = nullptr;
-    for (const List& form : forms) {
-      if (!fits(from, form, last) || (found && *found == form)) continue;
-      const bool air_index = form == forms[2] && form != forms[0];
-      if (air_index && std::ranges::none_of(from.cells, [](const PageToken& c) {
-            return std::abs(number(c.text).value_or(9) - 1) < 1e-3 || same(c.text, "air");
-          }))
-        continue;
-      if (found) continue;
-      found = &form;
-    }
-    if (!found) return false;
-    std::vector<PageToken> cells(columns_.size(), PageToken{"-"});
-    for (std::size_t i = 0; i < found->size(); ++i) cells[(*found)[i]] = from.cells[i];
-    row.cells = std::move(cells);
-    return true;
-  };
-  if (fill(row)) return;
+void PageTable::complete(PageRow& row, bool last, const Import& in) const {
+  if (fill(row, row.cells, last)) return;
   // The mark of the stop may stand in place of the radius: "7 STO 1.5".
-  if (PageRow plane = row; !row.stop.empty() && radius < columns_.size()) {
-    plane.cells.insert(plane.cells.begin() + static_cast<std::ptrdiff_t>(std::min(radius, plane.cells.size())),
-                       {"inf"});
-    if (fill(plane)) return;
-  }
+  const std::size_t radius = std::min({find(Column::radius), find(Column::curvature), row.cells.size()});
+  std::vector<PageToken> plane = row.cells;
+  plane.insert(plane.begin() + static_cast<std::ptrdiff_t>(radius), {"inf"});
+  if (!row.stop.empty() && fill(row, std::move(plane), last)) return;
   std::string names, found;
   for (const TableColumn& column : columns_) append(names, ", ", column.name);
   for (const PageToken& cell : row.cells) append(found, " ", cell.text);
   const bool whole = row.cells.size() == columns_.size();
-  for (std::size_t i = 0; whole && i < columns_.size(); ++i) {
-    if (fits({.cells = {row.cells[i]}}, {i}, last)) continue;
-    in.must_be(row.line, columns_[i].name, io_detail::in_quotes(row.cells[i].text),
-               columns_[i].kind == Column::index  ? "an index, 1.3 to 2.7"
-               : columns_[i].kind == Column::abbe ? "a V-number, 8 to 120"
-                                                  : "a number with a decimal point");
-  }
-  for (const PageToken& cell : row.cells) {
-    if (!cell.is_number && is_meant_as_number(cell.text)) {
-      in.must_be(row.line, "cell", io_detail::in_quotes(cell.text), "a number with a decimal point");
-    }
+  for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    const Column kind = whole ? columns_[i].kind : Column::left_out;
+    const PageToken& cell = row.cells[i];
+    if (whole ? fits(kind, cell, last) : cell.is_number || !is_meant_as_number(cell.text)) continue;
+    in.must_be(row.line, whole ? columns_[i].name : "cell", io_detail::in_quotes(cell.text),
+               kind == Column::index  ? "an index, 1.3 to 2.7"
+               : kind == Column::abbe ? "a V-number, 8 to 120"
+                                      : "a number with a decimal point");
   }
   in.must_be(row.line, "row", io_detail::in_quotes(beginning(found, 80)),
              "a cell per column: " + names + "; air has neither index nor V-number");

@@ -74,8 +74,8 @@ class PageTable {
   std::optional<int> next_label() const;
   std::vector<PageToken> row_tokens(const PageLine& line) const;
   bool is_row_of_cells(const PageLine& line) const;
-  bool fits(const PageRow& row, const std::vector<std::size_t>& columns, bool last) const;
-  void complete(PageRow& row, bool last, const Import& in);
+  bool fill(PageRow& row, std::vector<PageToken> cells, bool last) const;
+  void complete(PageRow& row, bool last, const Import& in) const;
   std::size_t find(Column kind) const;
 
   std::vector<TableColumn> columns_;  ///< without the number of the row
