@@ -12,7 +12,7 @@ namespace {
 
 /// One task in each line: words | commands | how to use them. Words without blanks, hyphens and capitals.
 constexpr std::string_view tasks = R"(
- mtf sharpness resolution contrast | report | report LENS --out DIR draws MTF against frequency and field.
+ mtf sharpness resolution contrast | report | report LENS --out DIR draws MTF with diffraction, over frequency and as makers print it.
  seidel aberration aberrations coma astigmatism sphericalaberration fieldcurvature fans | report spots | report LENS --out DIR draws Seidel sums, fans, field curvature.
  wavefront opd strehl airy diffraction | report psf | report LENS --out DIR draws the wavefront; psf --diffraction computes point images by waves.
  dof depthoffield hyperfocal breathing macro magnification | focus | focus LENS --at 1m,3m,inf prints depth of field, hyperfocal distance and breathing.
