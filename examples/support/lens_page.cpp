@@ -120,7 +120,7 @@ void head_row(std::ostream& html, std::initializer_list<const char*> names) {
 
 /// Wavefront errors of each field and wavelength.
 void wavefront_table(std::ostream& html, const Report& r, const petzval::LensReport& aberrations) {
-  if (!r.main().pupils) return;
+  if (!r.main().pupils || !aberrations.wavefront) return;
   html
       << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
          "ratio are about the image point with the smallest RMS; a dash stands beyond half a wave, where an image has "
@@ -376,7 +376,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
   const petzval::Grid<petzval::Spot>& spots = *aberrations.spots;
   const petzval::Grid<petzval::RayFan>& fans = *aberrations.ray_fans;
   std::vector<double> shifts;
-  if (aberrations.through_focus->size() > 0) {
+  if (aberrations.through_focus && aberrations.through_focus->size() > 0) {
     for (const auto& spot : (*aberrations.through_focus)[0]) shifts.push_back(spot.film_shift_mm);
   }
   const double farthest = std::abs(*std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); }));
@@ -403,18 +403,22 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
       "Errors of the rays through the two sections of the stop. A tilted line is defocus, an S is spherical "
       "aberration, a parabola is coma; distances between the curves are lateral colour.",
       [&] { return petzval::fan_figure(colours, subject_z, fans); });
-  add("wavefront", "Wavefront",
-      "The same rays by their optical paths. If all curves stay within a quarter of a wave, the lens is limited by "
-      "diffraction.",
-      [&] { return petzval::wavefront_figure(colours, subject_z, fans); });
+  if (aberrations.wavefront) {
+    add("wavefront", "Wavefront",
+        "The same rays by their optical paths. If all curves stay within a quarter of a wave, the lens is limited by "
+        "diffraction.",
+        [&] { return petzval::wavefront_figure(colours, subject_z, fans); });
+  }
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright points out of focus have blurs of this shape.",
       [&] { return petzval::footprint_figure(lens, subject_z, fields, first); });
-  add("focus", "Focus",
-      "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
-      "aberration that focusing does not remove.",
-      [&] { return petzval::focus_figure(colours, spots, weights); });
+  if (aberrations.through_focus) {
+    add("focus", "Focus",
+        "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
+        "aberration that focusing does not remove.",
+        [&] { return petzval::focus_figure(colours, spots, weights); });
+  }
   if (aberrations.mtf_chart && !aberrations.mtf_chart->empty()) {
     add("mtf_chart", "MTF chart",
         "Contrast from the centre to the edge of the picture, with diffraction, as makers of lenses print it: 10 lines "
@@ -422,28 +426,34 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
         "diffraction is included.",
         [&] { return petzval::mtf_chart_figure(colours, subject_z, *aberrations.mtf_chart, weights); });
   }
-  add("mtf", "Contrast", "Contrast of fine lines. Where the curves of a field separate there is astigmatism or coma.",
-      [&] {
-        const auto& diffraction = aberrations.mtf_diffraction;
-        return petzval::mtf_figure(colours, subject_z, *aberrations.mtf,
-                                   diffraction ? *diffraction : petzval::Grid<petzval::MtfPoint>{{}, 1});
-      });
-  if (aberrations.mtf_over_field->size() > 0) {
+  if (aberrations.mtf) {
+    add("mtf", "Contrast", "Contrast of fine lines. Where the curves of a field separate there is astigmatism or coma.",
+        [&] {
+          const auto& diffraction = aberrations.mtf_diffraction;
+          return petzval::mtf_figure(colours, subject_z, *aberrations.mtf,
+                                     diffraction ? *diffraction : petzval::Grid<petzval::MtfPoint>{{}, 1});
+        });
+  }
+  if (aberrations.mtf_over_field && aberrations.mtf_over_field->size() > 0) {
     add("mtf_field", "Contrast over the field",
         "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "
         "astigmatism or lateral colour.",
         [&] { return petzval::mtf_field_figure(colours, subject_z, *aberrations.mtf_over_field); });
   }
-  add("colour", "Spherical aberration and colour",
-      "Where rays of the axial point cross the axis, over their height on the stop. A bent curve is spherical "
-      "aberration; distances between the colours at the bottom are axial colour. On the right, if there are several "
-      "wavelengths and fields: lateral colour.",
-      [&] { return petzval::colour_figure(colours, subject_z, farthest); });
+  if (aberrations.longitudinal_aberration) {
+    add("colour", "Spherical aberration and colour",
+        "Where rays of the axial point cross the axis, over their height on the stop. A bent curve is spherical "
+        "aberration; distances between the colours at the bottom are axial colour. On the right, if there are several "
+        "wavelengths and fields: lateral colour.",
+        [&] { return petzval::colour_figure(colours, subject_z, farthest); });
+  }
   if (farthest != 0) {
-    add("field", "Field curvature and distortion",
-        "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
-        "curves on the left are astigmatism.",
-        [&] { return petzval::field_figure(lens, subject_z, farthest); });
+    if (aberrations.field_curvature) {
+      add("field", "Field curvature and distortion",
+          "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
+          "curves on the left are astigmatism.",
+          [&] { return petzval::field_figure(lens, subject_z, farthest); });
+    }
     if (aberrations.seidel) {
       add("seidel", "Seidel sums",
           "Third-order aberrations and colour that each surface contributes, for the largest field. Long bars of both "

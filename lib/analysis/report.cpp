@@ -133,15 +133,25 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
     r.seidel_declared = quantity([&] { return seidel(declared); });
   }
 
+  // Light of a point at infinity leaves an afocal lens as parallel light: it has no focus and no image height.
+  const bool no_image =
+      std::isinf(z) && std::ranges::any_of(r.sections, [](const auto& s) { return s.first_order.afocal; });
+  const auto of_image = [&](const auto& compute) {
+    return quantity([&] {
+      if (no_image) throw Error(lens.name() + ": is afocal, and the subject is at infinity; must have an image");
+      return compute();
+    });
+  };
+
   const std::uint32_t rays = rays_per_spot(lens);
   r.ray_fans = quantity([&] { return ray_fans(lens, z, fields); });
-  r.field_curvature = quantity([&] { return field_curvature(lens, z, fields); });
-  r.distortion = quantity([&] { return distortion_percent(lens, z, fields); });
+  r.field_curvature = of_image([&] { return field_curvature(lens, z, fields); });
+  r.distortion = of_image([&] { return distortion_percent(lens, z, fields); });
   r.spots = quantity([&] { return spot_diagram(lens, z, fields, rays, threads); });
   std::vector<double> frequencies;
   for (int k = 0; k <= 20; ++k) frequencies.push_back(5 * k);
-  r.mtf = quantity([&] { return geometric_mtf(*r.spots, frequencies, weights, threads); });
-  r.diffraction_limit = quantity([&] {
+  r.mtf = of_image([&] { return geometric_mtf(*r.spots, frequencies, weights, threads); });
+  r.diffraction_limit = of_image([&] {
     const double f_number = film_side_f_number(lens);
     const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
     std::vector<double> limit;
@@ -152,20 +162,20 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   for (int k = 0; k <= 10 && r.largest_field.field_rad != 0; ++k) {
     chart_fields.push_back(r.largest_field.field_rad * k / 10);
   }
-  r.mtf_over_field = quantity([&] { return mtf_over_field(r, chart_fields, rays / 8); });
+  r.mtf_over_field = of_image([&] { return mtf_over_field(r, chart_fields, rays / 8); });
   r.mtf_diffraction = quantity([&] {
     constexpr std::array coarse{0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0};
     return diffraction_mtf(lens, z, fields, coarse, weights, threads);
   });
   r.mtf_chart = quantity([&] { return mtf_chart(r, chart_fields); });
-  r.through_focus = quantity([&] { return spots_through_focus(r); });
+  r.through_focus = of_image([&] { return spots_through_focus(r); });
   r.encircled_energy = quantity([&] {
     constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};
     return encircled_energy(*r.spots, fractions, weights, threads);
   });
-  r.longitudinal_aberration = quantity([&] { return longitudinal_aberration(lens, z); });
+  r.longitudinal_aberration = of_image([&] { return longitudinal_aberration(lens, z); });
   r.lateral_colour = quantity([&] { return chief_ray_shifts(r); });
-  r.wavefront = quantity([&] { return wavefronts(r, fields, rays < 32768 ? 12 : 48); });
+  r.wavefront = of_image([&] { return wavefronts(r, fields, rays < 32768 ? 12 : 48); });
   return r;
 }
 

@@ -11,6 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
@@ -79,6 +80,32 @@ TEST(LensReport, QuantitiesThatFailLeaveTheOthers) {
   EXPECT_EQ(without_rims.encircled_energy.failure, without_rims.spots.failure);
   const std::string json = to_json(without_rims);
   EXPECT_NE(json.find("\"mtf\": null"), std::string::npos) << json;
+}
+
+TEST(LensReport, TelescopeHasSpotsButNoImage) {
+  Prescription telescope;
+  telescope.surfaces = {{.radius = 103.36, .thickness = 2, .medium = {.nd = 1.5168}, .semi_diameter = 10, .stop = true},
+                        {.thickness = 0, .semi_diameter = 10},
+                        {.thickness = 2, .medium = {.nd = 1.5168}, .semi_diameter = 10},
+                        {.radius = -25.84, .thickness = 20, .semi_diameter = 10}};
+  // The power is linear in the gap.
+  const auto power = [&](double gap) {
+    telescope.surfaces[1].thickness = gap;
+    return 1 / first_order(compile(telescope)).effective_focal_length;
+  };
+  const double at_100 = power(100), gap = 100 - 100 * at_100 / (power(200) - at_100);
+  telescope.surfaces[1].thickness = gap;
+  const LensReport report = lens_report(compile(telescope), {.fields_deg = {0, 1}});
+  ASSERT_TRUE(report.sections[0].first_order.afocal);
+  EXPECT_TRUE(report.spots);
+  EXPECT_TRUE(report.ray_fans);
+  for (const bool has_value :
+       {bool(report.field_curvature), bool(report.distortion), bool(report.mtf), bool(report.through_focus),
+        bool(report.longitudinal_aberration), bool(report.wavefront)}) {
+    EXPECT_FALSE(has_value);
+  }
+  // A near subject has an image.
+  EXPECT_TRUE(lens_report(compile(telescope), {.subject_z = -500, .fields_deg = {0, 1}}).field_curvature);
 }
 
 TEST(LensReport, NeedsAWeightForEachWavelengthAndAThread) {
