@@ -39,7 +39,8 @@ constexpr std::array all_groups{
     Group{"Depths", true,
           " --part --holdout --holdout-part --depth-kind --depth-unit --near --far --contrast --white "},
     Group{"Files", true,
-          " --deep-out --pair-layers --setup --glasses --configuration --coatings --match-glasses --ignore-apertures "},
+          " --deep-out --pair-layers --setup --glasses --configuration --embodiment --coatings --match-glasses "
+          "--ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "
           "--weight-distribution --weight-strength --weight-map "},

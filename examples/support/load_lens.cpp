@@ -75,11 +75,16 @@ Option* add_lens_options(App& app, petzval::LensSource& input, Option* lens) {
   app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
       ->needs(lens);
-  app.add_option("--embodiment,--configuration", input.configuration,
-                 "position of a zoom lens, by name or by number from 0; or a lens of a database or of a page with "
-                 "several, by its key, name or number from 1 (2004, or 2004/long)")
+  app.add_option("--configuration", input.configuration,
+                 "position of a zoom lens, by name or by number from 0; or a lens of a database, by its key or name "
+                 "(2004, or 2004/long)")
       ->default_str("the first")
       ->needs(lens);
+  app.add_option("--embodiment", input.configuration,
+                 "lens of a page with several tables, by its number (2, or 2/wide)")
+      ->default_str("")
+      ->needs(lens)
+      ->excludes("--configuration");
   app.add_flag("--match-glasses", input.match_glasses,
                "replace media known only by n_d and V_d by the nearest glass; within 0.001 and 0.5, with a note")
       ->needs(lens);

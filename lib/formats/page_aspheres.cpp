@@ -89,7 +89,7 @@ std::optional<PageAspheres::Key> PageAspheres::key_of(std::string_view word) con
   if (name.empty()) return {};
   Key key{.name = std::string(word), .order = {}};
   const bool greek = word.starts_with("\u03ba");
-  if (is_one_of(name, "k p cc conic conicconstant kappa ka \u03b5 epsilon")) {
+  if (is_one_of(name, "k p cc conic conicconstant kappa ka \u03b5 epsilon") || word == "e") {
     key.of_sphere = greek || (name != "k" && name != "cc" && !name.starts_with("conic")) ? 1 : 0;
     return key;
   }
@@ -108,7 +108,7 @@ std::optional<PageAspheres::Key> PageAspheres::key_of(std::string_view word) con
                        : letter                        ? name.substr(1)
                                                        : std::string();
   std::erase_if(digits, [](char c) { return c == '(' || c == ')' || c == '_'; });
-  if (name.size() == 2 && digits.size() == 1 && digits[0] >= 'd' && digits[0] <= 'j') {
+  if (name.size() == 2 && name[0] == 'a' && digits.size() == 1 && digits[0] >= 'd' && digits[0] <= 'j') {
     key.order = 4 + 2 * (digits[0] - 'd');
     return key;
   }
@@ -330,7 +330,7 @@ int PageAspheres::order_of(const Value& value) const {
   return of_a + 2 * (value.key.letter - 'a');
 }
 
-void PageAspheres::apply(const PageTable& table) {
+void PageAspheres::apply(const PageTable& table, bool several) {
   if (!row_.empty()) refuse_row();
   const auto& rows = table.rows();
   const bool labels = std::ranges::any_of(rows, [](const PageRow& row) { return row.label.has_value(); });
@@ -375,7 +375,8 @@ void PageAspheres::apply(const PageTable& table) {
     }
     std::ranges::sort(to.aspheric, {}, &AsphereTerm::order);
   }
-  const bool any_data = !values_.empty() || !columns_.empty(), any_mark = std::ranges::any_of(rows, &PageRow::asphere);
+  const bool any_data = !values_.empty() || !columns_.empty() || several,
+             any_mark = std::ranges::any_of(rows, &PageRow::asphere);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SurfaceRow& surface = in_.lens.surfaces[i];
     const bool known = has_data[i] || surface.conic != 0 || !surface.aspheric.empty();

@@ -25,7 +25,8 @@ class PageAspheres {
   bool take(const PageLine& line, bool titled);
   /// Puts conics and terms into the surfaces of the lens, one per row of the table.
   /// @throws Error for a surface that the table lacks, and for a marked asphere without data
-  void apply(const PageTable& table);
+  /// @param several  true if the data may stand behind another table
+  void apply(const PageTable& table, bool several);
 
  private:
   /// A column or a name: the conic, or a term.

@@ -28,7 +28,7 @@ constexpr std::array<std::pair<const char*, std::string_view>, 12> quantities = 
     {"Bf", "bf fb b.f bfl backfocus backfocallength bk"},
     {"Magnification", "\u03b2 beta magnification photographicmagnification imagingmagnification lateralmagnification"},
     {"d0", "d0 objectdistance subjectdistance shootingdistance workingdistance"},
-    {"Total Length", "tl totallength totallenslength overalllength lenstotallength totaltracklength ttl wholelength"},
+    {"Total Length", "l tl totallength totallenslength overalllength lenstotallength totaltracklength ttl wholelength"},
     {"", "zr zoomratio zoomingratio variablemagnificationratio variablepowerratio"},
 }};
 

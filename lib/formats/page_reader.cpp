@@ -92,6 +92,7 @@ class PageReader {
   Positions positions_;
   Section section_ = Section::text;
   std::vector<const PageLine*> skipped_;
+  bool several_ = false;  ///< true if the page has several tables
 };
 
 /// Selects the embodiment that ReadOptions::entry names.
@@ -116,6 +117,7 @@ void PageReader::choose() {
   const Embodiment& chosen = all[exists ? static_cast<std::size_t>(*wanted) - 1 : 0];
   lines_ = lines_.subspan(chosen.first, chosen.last - chosen.first);
   if (all.size() > 1) in_.lens.imported->entry = in_.entry();
+  several_ = all.size() > 1;
 }
 
 /// Opens the section that a title names; false for other lines.
@@ -145,7 +147,7 @@ void PageReader::skip(const PageLine& line) {
   const bool numbers = line.numbers() > 1 && 2 * line.numbers() > t.size();
   // "AlO = 0.0001" is a term with letters for digits.
   const auto is_term = [](const PageToken& x) {
-    return x.text.size() < 5 && std::string_view("ABCKabck").find(x.text[0]) != std::string_view::npos;
+    return x.text.size() < 5 && std::string_view("ABCEKPabcekp").find(x.text[0]) != std::string_view::npos;
   };
   bool value = false;
   for (std::size_t i = 1; i < t.size(); ++i) value = value || (t[i].text == "=" && is_term(t[i - 1]));
@@ -158,8 +160,10 @@ void PageReader::skip(const PageLine& line) {
   const bool named = is_word(t[0]) && (section_ == Section::positions || (t.size() > 1 && is_word(t[1])));
   const bool condition =
       t[0].text.size() > 2 && t[0].text[0] == '(' && label_of(t[0].text.substr(1, t[0].text.size() - 2));
-  const bool top = condition || is_one_of(t[0].text, "position positions") || is_top(line) ||
-                   is_one_of(t[0].text, "US EP JP DE GB FR CN KR TW WO");
+  const bool top =
+      condition || is_one_of(t[0].text, "position positions") || is_top(line) ||
+      is_one_of(t[0].text,
+                "US EP JP DE GB FR CN KR TW WO Jan. Feb. Mar. Apr. May Jun. Jul. Aug. Sep. Sept. Oct. Nov. Dec.");
   const bool suspect = coefficient || (numbers && !named && !top) || (value && section_ == Section::aspheres);
   if (!table_.is_empty() && section_ != Section::skipped && suspect && !line.says("continued")) {
     in_.must_be(line.number, "line", line.said(),
@@ -238,7 +242,7 @@ void PageReader::build() {
     in_.must_be(rows.front().line, "table", std::to_string(rows.size()) + " rows", "a surface per row");
   }
   if (table_.object_distance()) in_.lens.design.object_distance_mm = *table_.object_distance();
-  aspheres_.apply(table_);
+  aspheres_.apply(table_, several_);
   values_->apply(positions_);
   const auto at = [&](const std::string& name) -> Variable* {
     const auto found = positions_.variables.find(name);

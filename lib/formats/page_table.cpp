@@ -419,7 +419,9 @@ bool PageTable::take_named(const PageLine& line) {
     if (named_ && !rows_.empty() && take_pair(t[i].text)) continue;
     const Named name = named_at(t, i);
     const PageToken& value = t[std::min(name.value, t.size() - 1)];
-    const bool is_value = value.is_number || is_plane_word(value.text) || is_meant_as_number(value.text);
+    // "r14 = Stop" is a plane.
+    const bool is_stop = mark_in(value.text).stop;
+    const bool is_value = value.is_number || is_plane_word(value.text) || is_meant_as_number(value.text) || is_stop;
     if (is_one_of(name.kind, "r radius") && is_value) {
       if (rows_.empty()) {
         named_ = true;
@@ -428,7 +430,8 @@ bool PageTable::take_named(const PageLine& line) {
       }
       if (!named_) return false;
       PageRow row{.line = line.number, .label = label_of(name.number), .stop = stop ? "stop" : "", .asphere = asphere};
-      row.cells = {value, {"-"}, {"-"}, {"-"}};
+      row.cells = {is_stop ? PageToken{"inf"} : value, {"-"}, {"-"}, {"-"}};
+      if (is_stop) row.stop = "stop";
       stop = asphere = false;
       rows_.push_back(std::move(row));
     } else if (named_ && !rows_.empty() && is_one_of(name.kind, "d t l n nd v vd \u03bd \u03bdd s e")) {
@@ -443,7 +446,13 @@ bool PageTable::take_named(const PageLine& line) {
       cell = value;
       const std::size_t next = name.value + 1;
       const bool list = next < t.size() && (t[next].is_number || is_one_of(t[next].text, "- to"));
-      if (gap && list) {
+      // "d1 = 5.09 1.717 47.99" states index and V-number without names.
+      const bool glass =
+          list && next + 2 == t.size() && fits(Column::index, t[next], false) && fits(Column::abbe, t[next + 1], false);
+      if (gap && glass) {
+        row.cells[2] = t[next];
+        row.cells[3] = t[next + 1];
+      } else if (gap && list) {
         row.variable = 'd' + name.number;
         cell = {"(variable)"};
       } else if (gap && !value.is_number && !is_meant_as_number(value.text)) {
