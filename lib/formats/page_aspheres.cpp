@@ -55,7 +55,10 @@ PageAspheres::PageAspheres(std::span<const PageLine> page, Import& in) : in_(in)
   for (const PageLine& line : page) {
     const std::string text = plain(line.text);
     k_of_sphere_is_0_ = k_of_sphere_is_0_ || text.find("(1+k)") != text.npos || text.find("(k+1)") != text.npos;
-    k_of_sphere_is_1_ = k_of_sphere_is_1_ || text.find("1-k") != text.npos || text.find("1-\u03b5") != text.npos;
+    const bool sphere = text.find("spher") != text.npos && text.find("aspher") == text.npos;  // "K = 1 for a sphere"
+    k_of_sphere_is_0_ = k_of_sphere_is_0_ || (sphere && text.find("k=0") != text.npos);
+    k_of_sphere_is_1_ = k_of_sphere_is_1_ || (sphere && text.find("k=1") != text.npos) ||
+                        text.find("1-k") != text.npos || text.find("1-\u03b5") != text.npos;
     for (std::size_t i = 1; i < text.size(); ++i) take_formula(std::string_view(text).substr(i - 1));
   }
 }
@@ -177,7 +180,8 @@ std::size_t PageAspheres::name_surfaces(const PageLine& whole) {
     named = named || marked;
     found.push_back(*number);
   }
-  const bool rest_has_numbers = line.numbers() > found.size();
+  const bool rest_has_numbers =
+      std::any_of(t.begin() + static_cast<std::ptrdiff_t>(i), t.end(), [](const PageToken& x) { return x.is_number; });
   if (!named || found.empty() || (i < t.size() && !rest_has_numbers)) return 0;
   if (i < t.size() && keys_of({line.number, line.text, {t[i]}}, 0, true).empty() && !key_of(t[i].text)) return 0;
   surfaces_ = std::move(found);
@@ -255,6 +259,7 @@ bool PageAspheres::take_values(const PageLine& line, std::size_t from, bool titl
     // "Conic constant = 0.5", "4th order coefficient = 1.2E-05".
     const bool conic = same(word, "conic") && next < t.size() && is_one_of(t[next].text, "constant coefficient");
     if (conic) ++next;
+    if (conic && next < t.size() && is_one_of(t[next].text, "k (k)")) ++next;
     const auto equals =
         static_cast<std::size_t>(std::ranges::find(t.begin() + i, t.end(), "=", &PageToken::text) - t.begin());
     for (const bool named = equals < t.size() && equals <= next + 2 && !key_of(word); named && next < equals;) {

@@ -20,8 +20,8 @@ namespace {
 constexpr std::array<std::pair<const char*, std::string_view>, 12> quantities = {{
     {"Focal Length", "f f' fl efl focallength effectivefocallength focallengthf"},
     {"F-Number", "fno fnumber f/# f/no f/number fn f# numericalaperturefno fnumberfno"},
-    {"Angle of View", "2w 2\u03c9 2omega fullangleofview fullfieldangle totalangleofview"},
-    {"half angle", "w \u03c9 omega halfangle halfangleofview halffieldangle halfviewangle halfview"},
+    {"Angle of View", "2w 2\u03c9 2omega fullangleofview fullfieldangle totalangleofview fov"},
+    {"half angle", "w \u03c9 omega halfangle halfangleofview halffieldangle halfviewangle halfview hfov"},
     {"angle", "angleofview viewangle viewingangle fieldangle angleoffield fieldofview picturingangle"},
     {"half height", "imageheight y y' ymax maximumimageheight imageheighty maximageheight ih"},
     {"Image Height", "imagediagonal diagonal imagecircle imagecirclediameter"},
@@ -235,7 +235,11 @@ bool PagePositions::take(const PageLine& line) {
       if (at >= t.size()) return false;
       return t[at].is_number || (at > i && (is_plane_word(t[at].text) || is_meant_as_number(t[at].text)));
     };
-    while (end < t.size() && t[end].text != "=" && !is_value(end) && !(end > i && is_none(t[end].text))) ++end;
+    const auto is_name = [&](std::size_t at) {
+      return t[at].text != "=" && !is_value(at) &&
+             (at == i || (!is_none(t[at].text) && f_number_of(t[at].text).empty()));
+    };
+    while (end < t.size() && is_name(end)) ++end;
     std::string joined;
     for (std::size_t k = i; k < end; ++k) joined += t[k].text;
     std::optional<std::string> name = quantity(joined);
@@ -249,6 +253,7 @@ bool PagePositions::take(const PageLine& line) {
     const std::string all_words = lower(joined);
     const auto says = [&](const char* word) { return all_words.find(word) != std::string::npos; };
     const bool other = says("equivalent") || says("group") || says("unit");
+    if (!name && !other && all_words.starts_with("focallengthof") && says("system")) name = "Focal Length";
     for (std::size_t k = i + 1; !name && !other && k < end; ++k) {
       joined.clear();
       for (std::size_t m = k; m < end; ++m) joined += t[m].text;
@@ -352,11 +357,12 @@ void PagePositions::apply(Positions& positions) {
   }
   scale(positions, "half angle", "Angle of View", 2);
   scale(positions, "half height", "Image Height", 2);
-  if (names_.size() == count) {
+  if (!names_.empty() && count % names_.size() == 0) {
     std::map<std::string, int> used;
     for (std::size_t i = 0; i < count; ++i) {
-      const int again = ++used[names_[i]];
-      positions.names[std::to_string(i)] = names_[i] + (again > 1 ? ' ' + std::to_string(again) : "");
+      const std::string& name = names_[i % names_.size()];
+      const int again = ++used[name];
+      positions.names[std::to_string(i)] = name + (again > 1 ? ' ' + std::to_string(again) : "");
     }
   }
 }

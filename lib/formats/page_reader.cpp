@@ -28,7 +28,8 @@ struct Embodiment {
 /// True if the rows below a head begin with the first surface, and do not continue a table.
 bool begins_table(std::span<const PageLine> below) {
   for (const PageLine& line : below.first(std::min<std::size_t>(below.size(), 8))) {
-    const std::size_t star = line.tokens.size() > 1 && line.tokens[0].text == "*" ? 1 : 0;
+    if (is_top(line) || line.tokens.size() < 2) continue;
+    const std::size_t star = line.tokens[0].text == "*" ? 1 : 0;
     const auto label = label_of(line.tokens[star].text);
     if (label) return *label <= 1;
     if (line.numbers() > 1) return true;
@@ -39,7 +40,8 @@ bool begins_table(std::span<const PageLine> below) {
 std::vector<Embodiment> embodiments_of(std::span<const PageLine> lines) {
   std::vector<Embodiment> all;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool head = !surface_columns(lines[i]).empty() && begins_table(lines.subspan(i + 1));
+    const bool is_head = !surface_columns(lines[i]).empty();
+    const bool head = is_head && (all.empty() || begins_table(lines.subspan(i + 1)));
     if (!head && !names_radius(lines[i], 1)) continue;
     // Words above "r1 = 52.1" may read as a head.
     if (!head && !all.empty() && i - all.back().head <= 3 && names_radius(lines[i], 1) &&
@@ -144,13 +146,16 @@ void PageReader::skip(const PageLine& line) {
   const auto& t = line.tokens;
   const auto is_coefficient = [](const PageToken& x) { return x.is_number && x.text.find('e') != x.text.npos; };
   const bool coefficient = std::ranges::any_of(t, is_coefficient);
-  const bool numbers = line.numbers() > 1 && 2 * line.numbers() > t.size();
-  // "AlO = 0.0001" is a term with letters for digits.
+  const std::size_t half = 2 * line.numbers() + (section_ == Section::rows ? 1 : 0);
+  const bool numbers = line.numbers() > 1 && half > t.size();
+  // "AlO = 0.0001" is a term with letters for digits, "SC = 0.5" an unknown name of a conic.
   const auto is_term = [](const PageToken& x) {
-    return x.text.size() < 5 && std::string_view("ABCEKPabcekp").find(x.text[0]) != std::string_view::npos;
+    const bool other = std::string_view("fFdDrR(").find(x.text[0]) != std::string_view::npos;
+    return !other && x.text.find('/') == std::string::npos;
   };
   bool value = false;
-  for (std::size_t i = 1; i < t.size(); ++i) value = value || (t[i].text == "=" && is_term(t[i - 1]));
+  for (std::size_t i = 1; i < t.size(); ++i)
+    value = value || (t[i].text == "=" && line.numbers() > 0 && is_term(t[i - 1]));
   value = value || (line.numbers() > 0 && line.says("conic coefficient") && line.says("="));
   // "Exit pupil position 20.1 30.2", "3 4" at the top of a page.
   const auto is_word = [](const PageToken& x) {
@@ -164,7 +169,8 @@ void PageReader::skip(const PageLine& line) {
       condition || is_one_of(t[0].text, "position positions") || is_top(line) ||
       is_one_of(t[0].text,
                 "US EP JP DE GB FR CN KR TW WO Jan. Feb. Mar. Apr. May Jun. Jul. Aug. Sep. Sept. Oct. Nov. Dec.");
-  const bool suspect = coefficient || (numbers && !named && !top) || (value && section_ == Section::aspheres);
+  const bool suspect =
+      coefficient || (numbers && !named && !top) || (value && t.size() < 12 && section_ == Section::aspheres);
   if (!table_.is_empty() && section_ != Section::skipped && suspect && !line.says("continued")) {
     in_.must_be(line.number, "line", line.said(),
                 section_ == Section::rows ? "the next row of the table of surfaces, or text"
@@ -234,6 +240,10 @@ void PageReader::say_skipped() {
 }
 
 void PageReader::build() {
+  if (table_.is_empty()) {
+    throw Error(in_.where() +
+                ": no row with the number 1 below a head; must be a table of radius, thickness and index");
+  }
   table_.complete(in_);
   const auto& rows = table_.rows();
   read_table(table_.lines(), in_);
@@ -242,6 +252,12 @@ void PageReader::build() {
     in_.must_be(rows.front().line, "table", std::to_string(rows.size()) + " rows", "a surface per row");
   }
   if (table_.object_distance()) in_.lens.design.object_distance_mm = *table_.object_distance();
+  const auto is_glass = [](const SurfaceRow& s) { return s.mirror || !s.medium.is_air(); };
+  const auto has_vd = [](const SurfaceRow& s) { return s.mirror || s.medium.vd || s.medium.glass; };
+  if (std::ranges::none_of(surfaces, is_glass))
+    in_.must_be(rows.front().line, "index", "missing in all rows", "stated for glass");
+  if (std::ranges::none_of(surfaces, has_vd))
+    in_.warn(rows.front().line, "V-number", "is stated for no glass; the lens has no colour");
   aspheres_.apply(table_, several_);
   values_->apply(positions_);
   const auto at = [&](const std::string& name) -> Variable* {
@@ -301,7 +317,11 @@ bool is_page(std::string_view text) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const PageLine& line = lines[i];
     if (trimmed(line.text).starts_with('#')) continue;
-    if (auto columns = surface_columns(line); !columns.empty() && begins_table(std::span(lines).subspan(i + 1))) {
+    if (auto columns = surface_columns(line); !columns.empty()) {
+      if (i + 1 == lines.size()) continue;
+      const auto label = label_of(lines[i + 1].tokens.front().text);
+      if (label && *label > 1 && columns.front().kind == Column::number) return true;  // the first row is missing
+      if (!begins_table(std::span(lines).subspan(i + 1))) continue;
       if (values_before || !table.is_empty()) return true;
       table.set_head(line, std::move(columns));
       continue;
@@ -311,9 +331,11 @@ bool is_page(std::string_view text) {
     if (table.is_other_row(line)) return true;
     const std::string_view first = line.tokens.front().text;
     const bool value = std::ranges::any_of(line.tokens, [](const PageToken& t) { return t.text == "="; });
-    const auto letters = std::ranges::count_if(first, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; });
-    const bool has_word = letters > 1 && !is_plane_word(first) && !is_stop_word(first);
-    values_before = values_before || value || first.starts_with('[');
+    const bool letter = (lower(first[0]) >= 'a' && lower(first[0]) <= 'z') || first[0] == '(';
+    const bool has_word = letter && !is_plane_word(first) && !is_stop_word(first) && !is_asphere_mark(first) &&
+                          !label_of(first) && !is_one_of(first, "S film sensor");
+    const bool focal_length = line.numbers() > 0 && (line.says("focal") || is_one_of(first, "f fno efl"));
+    values_before = values_before || value || focal_length || first.starts_with('[');
     if (table.rows().size() > 1 && (value || has_word || first.starts_with('['))) return true;
   }
   return table.is_printed();

@@ -56,14 +56,14 @@ Mark mark_in(std::string_view word) {
   const std::string inner = lower(in_brackets ? word.substr(1, word.size() - 2) : word);
   const auto contains = [&](std::string_view part) { return inner.find(part) != std::string::npos; };
   Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || element ||
-                       is_one_of(word, "fs fc cg st sp")};
+                       is_one_of(word, "fs f.s. fc cg st sp blende")};
   if (!mark.is_mark || contains("variable") || contains("flare") || !variable_name(inner).empty()) {
     mark.is_mark = mark.is_mark && contains("flare");
     return mark;
   }
   mark.asphere = contains("asp") || contains("*");
   mark.stop = !mark.asphere && (contains("stop") || contains("sto") || contains("aperture") || contains("diaphragm") ||
-                                contains("iris") || is_one_of(inner, "ast as s st sp"));
+                                contains("iris") || is_one_of(inner, "ast as s st sp blende"));
   return mark;
 }
 
@@ -81,7 +81,8 @@ Named named_at(const std::vector<PageToken>& t, std::size_t i) {
   const bool equals = next < t.size() && t[next].text == "=";
   const std::size_t value = next + equals;
   const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
-  const bool may_lack_number = equals && is_one_of(name, "n nd v vd \u03bd \u03bdd");
+  const bool long_name = is_one_of(name, "nd vd \u03bdd \u03c5d");
+  const bool may_lack_number = long_name || (equals && is_one_of(name, "n v \u03bd \u03c5"));
   if (value >= t.size() || digits == 0 || (digits == name.size() && !may_lack_number)) return {};
   if (name.find_first_not_of("0123456789", digits) != std::string::npos) return {};
   // Without "=", a row of positions has several numbers.
@@ -257,6 +258,11 @@ std::optional<int> PageTable::next_label() const {
 std::vector<PageToken> PageTable::row_tokens(const PageLine& line) const {
   std::vector<PageToken> t = line.tokens;
   if (separator_ != ' ' || !labelled_) return t;
+  // "ST 7 inf": the mark stands in front of the number.
+  if (t.size() > 2 && is_one_of(t[0].text, "s st as sto stop") && label_of(t[1].text)) {
+    t[0] = t[1];
+    t[1] = {"(stop)"};
+  }
   const std::string& first = t[0].text;
   const bool element = (first[0] == 'L' || first[0] == 'G') && first.size() > 1 && label_of(first.substr(1));
   if (element && t.size() > 2 && label_of(t[1].text)) t.erase(t.begin());
@@ -276,7 +282,7 @@ std::vector<PageToken> PageTable::row_tokens(const PageLine& line) const {
 }
 
 bool PageTable::take_row(const PageLine& line) {
-  if (columns_.empty() || named_) return false;
+  if (columns_.empty() || named_ || is_top(line)) return false;
   if (rows_.empty() && !counted_ && label_of(line.tokens[0].text) && *label_of(line.tokens[0].text) <= 1 &&
       line.tokens.size() > columns_.size()) {
     labelled_ = true;
@@ -301,7 +307,8 @@ bool PageTable::take_row(const PageLine& line) {
   const std::size_t from = labelled_ && !unnumbered ? star + 1 : 0;
   if (is_object(tokens[0].text) || is_image(tokens[from < tokens.size() ? from : 0].text)) {
     // "Object plane inf (d0)", "Image plane inf" and "9 Image inf" are no surfaces.
-    return line.numbers() < 3;
+    const bool follows = from == 0 || !next_label() || label == next_label();
+    return follows && line.numbers() < 3;
   }
   PageRow row = take_marks({line.number, line.text, tokens}, from);
   if (labelled_ && !unnumbered) {
@@ -434,7 +441,7 @@ bool PageTable::take_named(const PageLine& line) {
       if (is_stop) row.stop = "stop";
       stop = asphere = false;
       rows_.push_back(std::move(row));
-    } else if (named_ && !rows_.empty() && is_one_of(name.kind, "d t l n nd v vd \u03bd \u03bdd s e")) {
+    } else if (named_ && !rows_.empty() && is_one_of(name.kind, "d t l n nd v vd \u03bd \u03bdd \u03c5 \u03c5d s e")) {
       const bool gap = is_one_of(name.kind, "d t l s e");
       PageRow* own = gap && !name.number.empty() ? find(label_of(name.number).value_or(-1)) : nullptr;
       PageRow& row = own ? *own : rows_.back();
@@ -488,11 +495,11 @@ bool PageTable::fill(PageRow& row, std::vector<PageToken> cells, bool last) cons
   const auto is_air = [](const PageToken& c) {
     return std::abs(number(c.text).value_or(9) - 1) < 1e-3 || same(c.text, "air");
   };
-  const bool air = std::ranges::any_of(cells, is_air);
   const std::function<bool(Column)> forms[] = {
       [](Column) { return true; },
+      [](Column c) { return c != Column::left_out; },
       [](Column c) { return !is_of_glass(c); },
-      [&](Column c) { return !is_of_glass(c) || (air && c == Column::index); },
+      [](Column c) { return !is_of_glass(c) || c == Column::index; },
       [](Column c) { return !is_of_glass(c) || c == Column::glass; },
       [](Column c) { return !is_of_glass(c) && !is_aperture(c); },
       [&](Column c) { return !is_of_glass(c) && !(last && is_gap(c)); },
@@ -509,6 +516,10 @@ bool PageTable::fill(PageRow& row, std::vector<PageToken> cells, bool last) cons
       }
     }
     if (taken != cells.size() || filled.size() != columns_.size()) continue;
+    // Glass has a V-number; air alone may state its index only.
+    const std::size_t index = find(Column::index);
+    const bool lacks_abbe = has(Column::index) && !has(Column::abbe) && find(Column::abbe) < columns_.size();
+    if (lacks_abbe && index < filled.size() && !is_air(filled[index]) && !is_none(filled[index].text)) continue;
     row.cells = std::move(filled);
     return true;
   }
@@ -516,7 +527,9 @@ bool PageTable::fill(PageRow& row, std::vector<PageToken> cells, bool last) cons
 }
 
 void PageTable::complete(PageRow& row, bool last, const Import& in) const {
-  if (fill(row, row.cells, last)) return;
+  // "3 stop 47" has a thickness.
+  const bool single = !row.stop.empty() && row.cells.size() == 1 && row.cells[0].is_number;
+  if (!single && fill(row, row.cells, last)) return;
   // The mark of the stop may stand in place of the radius: "7 STO 1.5".
   const std::size_t radius = std::min({find(Column::radius), find(Column::curvature), row.cells.size()});
   std::vector<PageToken> plane = row.cells;
@@ -593,7 +606,8 @@ std::vector<TableLine> PageTable::lines() const {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::string& cell = row.cells[i].text;
       const bool index = columns_[i].kind == Column::index;
-      line.cells.push_back(cell == "(variable)" ? "0" : air && index ? "1" : std::string_view(cell));
+      const bool plane = columns_[i].kind == Column::radius && std::abs(number(cell).value_or(0)) > 1e9;
+      line.cells.push_back(cell == "(variable)" ? "0" : plane ? "inf" : air && index ? "1" : std::string_view(cell));
     }
   }
   return lines;

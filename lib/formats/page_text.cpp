@@ -38,6 +38,7 @@ constexpr std::pair<std::string_view, std::string_view> signs[] = {
     {"\uff5e", " "},
     {"\u301c", " "},
     {"\u2026", " "},
+    {"\u2190", " "},
     {"\uff0a", "*"},
     {"\u2217", "*"},
     {"\u207b", "^-"},

@@ -231,6 +231,10 @@ TEST(Page, LinesMayBePrintedInOtherForms) {
       {"Surface 1\n", "[Aspherical data of surface 1]\n"},
       {"Surface 1\nK", "NO.1; K"},
       {"Surface 1\nK", "R1 K"},
+      {"Surface 1\nK = 0.5 A4", "r1: K = 0.5\nA4"},
+      {"K = 0.5 A4", "Conic constant (K) = 0.5 A4"},
+      {"3 (stop) inf", "ST 3 1.E+18"},
+      {"64.2\n", "64.2\nUS 9,256,059 B2\nApr. 28, 2016\n1 2\n"},
       {"K = 0.5 A4", "Conic constant = 0.5 \u03b14"},
       {"K = 0.5", "KA = 1.5"},
       {"2.0E-09\n", "2.0E-09\n(1) f1/f = 1.2\nf1 = 22.1 f2 = -11.0\nF/2.8\n"},
@@ -292,6 +296,13 @@ TEST(Page, FaultsAreRefusedWithLineAndCell) {
   expect_tokens(refused_page(with(small, " 64.2", "")), {"x:4"});
   expect_tokens(refused_page(with(small, "-48.0 1.0", "-48.0 d2")), {"x:5", "thickness", "\"d2\""});
   expect_tokens(refused_page(small + "Various data\n1.0 2.0 3.0\n"), {"x:11"});
+  expect_tokens(refused_page(small + "SC = 0.5\n"), {"x:10"});
+  EXPECT_NE(refused_page(with(small, "1* 60.0 5.0 1.5168 64.2\n", "")), "no error");
+  expect_tokens(refused_page(with(small, "1.5168 64.2", "")), {"x:4", "index"});
+  // A line behind a clean table is no row.
+  const std::string clean = "No. r d nd vd\n1 60.0 5.0 1.5168 64.2\n2 -48.0 47\n";
+  EXPECT_EQ(read_page(clean + "f 52.4\n").surfaces.size(), 2u);
+  EXPECT_EQ(refused_page("Focal length 70\n" + clean).find("no error"), std::string::npos);
 }
 
 /// A change of a page: moves nothing, or takes or damages one number.
