@@ -207,10 +207,7 @@ void PageReader::take(const PageLine& line) {
     return;
   }
   if (section_ != Section::skipped && values_->take(line)) return;
-  const Section before = section_;
-  if (open_section(line)) return;
-  section_ = before;
-  skip(line);
+  if (!open_section(line)) skip(line);
 }
 
 /// Names the thicknesses that vary before the values are read, which may precede the table.

@@ -516,7 +516,7 @@ bool PageTable::fill(PageRow& row, std::vector<PageToken> cells, bool last) cons
       }
     }
     if (taken != cells.size() || filled.size() != columns_.size()) continue;
-    // Glass has a V-number; air alone may state its index only.
+    // Glass has a V-number; a row with an index only is air.
     const std::size_t index = find(Column::index);
     const bool lacks_abbe = has(Column::index) && !has(Column::abbe) && find(Column::abbe) < columns_.size();
     if (lacks_abbe && index < filled.size() && !is_air(filled[index]) && !is_none(filled[index].text)) continue;
