@@ -272,6 +272,7 @@ std::vector<PageLine> page_lines(std::string_view text) {
     }
   }
   for (PageLine& line : lines) line.tokens = tokens_of(line.text, commas > 4 * points);
+  std::erase_if(lines, [](const PageLine& line) { return line.tokens.empty(); });
   return lines;
 }
 

@@ -27,7 +27,7 @@ struct PageLine {
   bool says(std::string_view any_of) const;  ///< true if the line has one of these words, in any case
 };
 
-/// The lines of a page that are not empty. Decimal commas are taken if few numbers have points.
+/// The lines of a page that have tokens. Decimal commas are taken if few numbers have points.
 std::vector<PageLine> page_lines(std::string_view text);
 
 /// The tokens of a text.

@@ -91,6 +91,10 @@ Texts tables() {
   return written([](const Prescription& lens) { return format_table(lens); });
 }
 Texts typed_tables() { return {seed("patent.txt"), seed("sheet.csv")}; }
+Texts pages() {
+  return {sample("pages/olympus.txt"),    sample("pages/zeiss_tessar.txt"), sample("pages/sony_prime.txt"),
+          sample("pages/canon_zoom.txt"), sample("pages/fuji_new.txt"),     sample("pages/nikon_zoom.txt")};
+}
 Texts flaresim_texts() { return {seed("flaresim.lens")}; }
 Texts oslo_texts() { return {sample("oslo_words.len")}; }
 Texts opticalbench_texts() { return {sample("opticalbench_macro.txt"), sample("opticalbench_zoom.txt")}; }
@@ -99,7 +103,7 @@ Texts collection_texts() { return {seed("lenshh.lhlt"), seed("deeplens.json"), s
 Texts optiland_texts() { return {seed("optiland.json")}; }
 Texts all_lens_texts() {
   Texts result;
-  for (const auto& texts : {own_json, zemax_texts, codev_texts, tables, typed_tables, flaresim_texts, oslo_texts,
+  for (const auto& texts : {own_json, zemax_texts, codev_texts, tables, typed_tables, pages, flaresim_texts, oslo_texts,
                             opticalbench_texts, lentil_texts, optiland_texts, collection_texts}) {
     const Texts some = texts();
     result.insert(result.end(), some.begin(), some.begin() + 1);

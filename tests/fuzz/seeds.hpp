@@ -13,6 +13,7 @@ std::vector<std::string> camera_setups();
 std::vector<std::string> zemax_texts();
 std::vector<std::string> codev_texts();
 std::vector<std::string> typed_tables();
+std::vector<std::string> pages();
 std::vector<std::string> flaresim_texts();
 std::vector<std::string> oslo_texts();
 std::vector<std::string> opticalbench_texts();

@@ -30,6 +30,7 @@ std::span<const Target> targets() {
       Target{"zemax", "lens_file", fuzz_lens_file, zemax_texts, 8192, 600},
       Target{"codev", "lens_file", fuzz_lens_file, codev_texts, 8192, 600},
       Target{"typed_table", "lens_file", fuzz_lens_file, typed_tables, 4096, 600},
+      Target{"page", "lens_file", fuzz_lens_file, pages, 8192, 600},
       Target{"flaresim", "lens_file", fuzz_lens_file, flaresim_texts, 4096, 600},
       Target{"oslo", "lens_file", fuzz_lens_file, oslo_texts, 4096, 600},
       Target{"opticalbench", "lens_file", fuzz_lens_file, opticalbench_texts, 4096, 600},
