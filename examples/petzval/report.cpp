@@ -146,7 +146,7 @@ int commands::report(int argc, char** argv) {
       "wavelengths with their weights, and fields are taken from the file if it has them.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
       "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_wavefront.svg, LENS_footprints.svg, "
-      "LENS_focus.svg, LENS_mtf_chart.svg, LENS_mtf.svg, "
+      "LENS_focus.svg, LENS_mtf_chart.svg, LENS_mtf.svg, LENS_mtf_focus.svg, "
       "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg, with coatings "
       "LENS_transmittance.svg and LENS_transmittance_field.svg, and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead; with --json on standard error.",

@@ -434,6 +434,16 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
                                      diffraction ? *diffraction : petzval::Grid<petzval::MtfPoint>{{}, 1});
         });
   }
+  if (aberrations.mtf_through_focus && !aberrations.mtf_through_focus->values.empty()) {
+    add("mtf_focus", "Contrast through focus",
+        "Contrast of 30 lines per mm on films in front of and behind the film. Peaks of tangential and sagittal curves "
+        "at different films are astigmatism, of different fields curvature of field.",
+        [&] {
+          std::vector<double> films;
+          for (int k = -10; k <= 10; ++k) films.push_back(shifts.back() * k / 20);
+          return petzval::mtf_focus_figure(colours, subject_z, films, *aberrations.mtf_through_focus);
+        });
+  }
   if (aberrations.mtf_over_field && aberrations.mtf_over_field->size() > 0) {
     add("mtf_field", "Contrast over the field",
         "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "

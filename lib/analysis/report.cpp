@@ -65,6 +65,14 @@ Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
   return through_focus(*r.spots, shifts, weights);
 }
 
+Grid<MtfPoint> mtf_through_focus(const LensReport& r, std::span<const double> fields_rad) {
+  if (r.through_focus->values.empty()) return {{}, 1};
+  std::vector<double> shifts;
+  for (int k = -10; k <= 10; ++k) shifts.push_back((*r.through_focus)[0].back().film_shift_mm * k / 20);
+  return diffraction_mtf(r.lens, r.conditions.subject_z, fields_rad, std::array{30.0}, r.conditions.wavelength_weights,
+                         r.conditions.threads, shifts);
+}
+
 Grid<std::optional<double>> chief_ray_shifts(const LensReport& r) {
   Grid<std::optional<double>> shifts{{}, r.spots->columns};
   for (std::size_t i = 0; i < r.spots->values.size(); ++i) {
@@ -169,6 +177,7 @@ LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   });
   r.mtf_chart = quantity([&] { return mtf_chart(r, chart_fields); });
   r.through_focus = of_image([&] { return spots_through_focus(r); });
+  r.mtf_through_focus = quantity([&] { return mtf_through_focus(r, fields); });
   r.encircled_energy = quantity([&] {
     constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};
     return encircled_energy(*r.spots, fractions, weights, threads);

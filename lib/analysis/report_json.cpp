@@ -191,6 +191,16 @@ std::string to_json(const LensReport& r) {
                       "sagittal", list_of(line, &MtfPoint::sagittal)));
     }
   });
+  write("mtf_through_focus", r.mtf_through_focus, [&](List& list, Index field, Index k, const MtfPoint& p) {
+    if (k > 0) return;
+    const std::span<const MtfPoint> points = (*r.mtf_through_focus)[field];
+    const double last = (*r.through_focus)[0].back().film_shift_mm;
+    std::vector<double> shifts;
+    for (Index film = 0; film < points.size(); ++film) shifts.push_back(last * (static_cast<double>(film) - 10) / 20);
+    list.add(at(field, "lp_per_mm", p.frequency_per_mm, "film_shift_mm", json(shifts), "tangential",
+                list_of(points, &MtfPoint::tangential), "sagittal", list_of(points, &MtfPoint::sagittal), "error",
+                p.sampling_error));
+  });
   write("through_focus", r.through_focus, [&](List& list, Index field, Index, const ThroughFocusSpot& spot) {
     list.add(at(field, "film_shift_mm", spot.film_shift_mm, "rms_radius_mm", spot.rms_radius_mm, "sampling_error_mm",
                 spot.sampling_error_mm));

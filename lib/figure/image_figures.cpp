@@ -129,6 +129,39 @@ std::string mtf_chart_figure(const Lens& lens, double subject_z, std::span<const
                              figure_detail::error_text(all) + ".");
 }
 
+std::string mtf_focus_figure(const Lens& lens, double subject_z, std::span<const double> film_shifts_mm,
+                             const Grid<MtfPoint>& points) {
+  if (film_shifts_mm.size() < 2 || points.columns != film_shifts_mm.size() || points.values.empty()) {
+    throw Error("mtf_focus_figure: " + std::to_string(film_shifts_mm.size()) + " shifts for " +
+                std::to_string(points.columns) + " points; must be two or more, and as many");
+  }
+  std::vector<Key> keys;
+  for (std::size_t field = 0; field < points.size(); ++field) {
+    keys.push_back({figure_detail::field_colour(field), figure_detail::field_text(points[field].front().field_rad)});
+  }
+  const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width - right, keys);
+  figure_detail::Svg svg(width, last_y + 58);
+  figure_detail::draw_head(svg, lens, "MTF through focus", subject_z, lens.primary_wavelength());
+  Axes axes(svg, left, top, width - left - right, height,
+            {film_shifts_mm.front(), film_shifts_mm.back(), "shift of the film, positive away from the lens (mm)"},
+            {0, 1, "contrast at " + to_text(points.values[0].frequency_per_mm, 4) + " line pairs per mm"});
+  for (std::size_t field = 0; field < points.size(); ++field) {
+    std::vector<Axes::Point> tangential, sagittal;
+    for (std::size_t k = 0; k < film_shifts_mm.size(); ++k) {
+      tangential.push_back({film_shifts_mm[k], points[field][k].tangential});
+      sagittal.push_back({film_shifts_mm[k], points[field][k].sagittal});
+    }
+    axes.curve(tangential, curve_style(keys[field].colour));
+    axes.curve(sagittal, curve_style(keys[field].colour, dashes));
+  }
+  figure_detail::draw_keys(svg, left, y, width - right, keys);
+  svg.text(figure_detail::sheet_margin, last_y + 24,
+           "Solid: tangential, dashed: sagittal. With diffraction, error at most " +
+               figure_detail::error_text(points.values) + ".",
+           figure_detail::small_text);
+  return std::move(svg).finish();
+}
+
 std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points) {
   if (points.size() < 2) {
     throw Error("mtf_field_figure: " + std::to_string(points.size()) + " fields; must be two or more");

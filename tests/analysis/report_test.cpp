@@ -41,6 +41,8 @@ TEST(LensReport, IndicesAreFieldAndWavelength) {
               geometric_mtf(spot_diagram(lens, far, off_axis, 4096), frequencies)[0][0].tangential, 1e-12);
   EXPECT_NEAR((*r.mtf_diffraction)[1][5].sagittal, diffraction_mtf(lens, far, off_axis, frequencies)[0][0].sagittal,
               1e-3);
+  // The middle of 21 films is the film of the lens.
+  EXPECT_NEAR((*r.mtf_through_focus)[1][10].sagittal, diffraction_mtf(lens, far, off_axis, tens)[0][2].sagittal, 1e-3);
   ASSERT_EQ(r.mtf_chart->size(), 2u);
   EXPECT_EQ(r.mtf_chart->at(0).second[10][3].sagittal, diffraction_mtf(lens, far, off_axis, tens)[0][3].sagittal);
   EXPECT_EQ(r.mtf_chart->at(1).second[10][3].tangential,

@@ -201,8 +201,8 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
   const auto written = lines(outcome.out);
   const std::vector<std::string> names{"layout.svg",    "spots.svg",     "through_focus.svg", "energy.svg",
                                        "fans.svg",      "wavefront.svg", "footprints.svg",    "focus.svg",
-                                       "mtf_chart.svg", "mtf.svg",       "mtf_field.svg",     "colour.svg",
-                                       "field.svg",     "seidel.svg",    "illumination.svg"};
+                                       "mtf_chart.svg", "mtf.svg",       "mtf_focus.svg",     "mtf_field.svg",
+                                       "colour.svg",    "field.svg",     "seidel.svg",        "illumination.svg"};
   ASSERT_EQ(written.size(), names.size() + 1);
   const std::string page = read(path("out/cooke_triplet_50mm_f5.html"));
   for (std::size_t i = 0; i < names.size(); ++i) {

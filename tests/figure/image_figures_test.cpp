@@ -139,6 +139,23 @@ TEST(MtfFigures, ChartsHaveImageHeightsInMillimetres) {
   testing::expect_error([&] { mtf_chart_figure(lens, far, {}); }, {"charts"});
 }
 
+TEST(MtfFigures, ThroughFocusHasTheNumbersOfEachFilm) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(9.0)};
+  const std::array frequencies{30.0};
+  const std::array shifts{-0.2, -0.1, 0.0, 0.2};
+  const auto points = diffraction_mtf(lens, far, fields, frequencies, {}, 1, shifts);
+  const std::string svg = mtf_focus_figure(lens, far, shifts, points);
+  const auto curves = testing::paths(svg, "stroke-width=\"1.6\"");
+  ASSERT_EQ(curves.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {  // the sagittal curve of the second field
+    EXPECT_NEAR(curves[3][k].first, 78 + (960 - 78 - 24) * (shifts[k] + 0.2) / 0.4, 0.02);
+    EXPECT_NEAR(curves[3][k].second, 84 + 360 * (1 - points[1][k].sagittal), 0.02);
+  }
+  expect_text_within_sheet(svg);
+  testing::expect_error([&] { mtf_focus_figure(lens, far, std::array{0.0, 1.0}, points); }, {2, "shifts", 4});
+}
+
 /// Transmittance of a point in a figure: its frame ends at 100 % on top.
 double percent(double y, double lowest) { return 100 - (y - 84) / 330 * (100 - lowest); }
 

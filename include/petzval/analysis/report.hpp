@@ -80,6 +80,9 @@ struct LensReport {
   Quantity<std::vector<MtfChart>> mtf_chart = {};
   /// [field][film]: five films, two through_focus_step() to both sides; empty if the spots have no focus.
   Quantity<Grid<ThroughFocusSpot>> through_focus = {};
+  /// [field][film]: diffraction_mtf() at 30 per mm on 21 films with equal distances between the second and the
+  /// fourth film of `through_focus`; empty if the spots have no focus.
+  Quantity<Grid<MtfPoint>> mtf_through_focus = {};
   Quantity<Grid<EncircledEnergy>> encircled_energy = {};       ///< [field][fraction]: of 0.5, 0.8, 0.9 and 0.95
   Quantity<Grid<AxialRayFocus>> longitudinal_aberration = {};  ///< [wavelength][position on the stop]
   /// [field][wavelength]: shift of Spot::chief_ray_height from the primary wavelength, mm; nullopt: no chief ray.

@@ -144,6 +144,15 @@ PETZVAL_API std::string mtf_chart_figure(const Lens& lens, double subject_z, std
 /// @throws Error     if there are less than two fields
 PETZVAL_API std::string mtf_field_figure(const Lens& lens, double subject_z, const Grid<MtfPoint>& points);
 
+/// Draws contrast through focus: a colour for each field, tangential solid, sagittal dashed.
+///
+/// @param lens, subject_z  as in layout_figure()
+/// @param film_shifts_mm   shifts of the film towards +z, in order (mm)
+/// @param points           diffraction_mtf() at one frequency: [field][shift]
+/// @throws Error           if there are less than two shifts, or their number differs from the number of points
+PETZVAL_API std::string mtf_focus_figure(const Lens& lens, double subject_z, std::span<const double> film_shifts_mm,
+                                         const Grid<MtfPoint>& points);
+
 /// Draws geometric encircled energy: the fraction of the rays over the radius, a colour for each field. A
 /// line marks the Airy radius at the primary wavelength.
 ///
