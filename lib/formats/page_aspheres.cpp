@@ -55,7 +55,7 @@ PageAspheres::PageAspheres(std::span<const PageLine> page, Import& in) : in_(in)
   for (const PageLine& line : page) {
     const std::string text = plain(line.text);
     k_of_sphere_is_0_ = k_of_sphere_is_0_ || text.find("(1+k)") != text.npos || text.find("(k+1)") != text.npos;
-    const bool sphere = text.find("spher") != text.npos && text.find("aspher") == text.npos;  // "K = 1 for a sphere"
+    const bool sphere = lower(line.text).find(" spher") != std::string::npos;  // "K = 1 for a sphere"
     k_of_sphere_is_0_ = k_of_sphere_is_0_ || (sphere && text.find("k=0") != text.npos);
     k_of_sphere_is_1_ = k_of_sphere_is_1_ || (sphere && text.find("k=1") != text.npos) ||
                         text.find("1-k") != text.npos || text.find("1-\u03b5") != text.npos;

@@ -251,6 +251,7 @@ TEST(Page, LinesMayBePrintedInOtherForms) {
 }
 
 TEST(Page, ConicsFollowTheFormula) {
+  EXPECT_DOUBLE_EQ(conic(with(small, "Example 1\n", "Example 1\nThe constant K = 1 for a sphere.\n")), -0.5);
   for (const char* formula : {"1-K\u00b7h2/r2", "1\u2212K\u00d7c2\u00d7h2", "1-KC2Y2"}) {
     EXPECT_DOUBLE_EQ(
         conic(with(small, "Aspherical data\n", "Aspherical data\nX = ch2/(1+(" + std::string(formula) + ")^1/2)\n")),
