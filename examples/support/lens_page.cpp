@@ -439,9 +439,8 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::LensReport&
         "Contrast of 30 lines per mm on films in front of and behind the film. Peaks of tangential and sagittal curves "
         "at different films are astigmatism, of different fields curvature of field.",
         [&] {
-          std::vector<double> films;
-          for (int k = -10; k <= 10; ++k) films.push_back(shifts.back() * k / 20);
-          return petzval::mtf_focus_figure(colours, subject_z, films, *aberrations.mtf_through_focus);
+          return petzval::mtf_focus_figure(colours, subject_z, petzval::mtf_film_shifts(aberrations),
+                                           *aberrations.mtf_through_focus);
         });
   }
   if (aberrations.mtf_over_field && aberrations.mtf_over_field->size() > 0) {

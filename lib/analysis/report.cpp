@@ -66,9 +66,8 @@ Grid<ThroughFocusSpot> spots_through_focus(const LensReport& r) {
 }
 
 Grid<MtfPoint> mtf_through_focus(const LensReport& r, std::span<const double> fields_rad) {
-  if (r.through_focus->values.empty()) return {{}, 1};
-  std::vector<double> shifts;
-  for (int k = -10; k <= 10; ++k) shifts.push_back((*r.through_focus)[0].back().film_shift_mm * k / 20);
+  const std::vector<double> shifts = mtf_film_shifts(r);
+  if (shifts.empty()) return {{}, 1};
   return diffraction_mtf(r.lens, r.conditions.subject_z, fields_rad, std::array{30.0}, r.conditions.wavelength_weights,
                          r.conditions.threads, shifts);
 }
@@ -96,6 +95,13 @@ Grid<std::optional<Wavefront>> wavefronts(const LensReport& r, std::span<const d
 }
 
 }  // namespace
+
+std::vector<double> mtf_film_shifts(const LensReport& report) {
+  std::vector<double> shifts;
+  const auto& films = *report.through_focus;
+  for (int k = -10; k <= 10 && !films.values.empty(); ++k) shifts.push_back(films[0].back().film_shift_mm * k / 20);
+  return shifts;
+}
 
 LensReport lens_report(const Lens& lens, LensReport::Conditions conditions) {
   LensReport r{.lens = lens, .conditions = std::move(conditions)};

@@ -194,10 +194,7 @@ std::string to_json(const LensReport& r) {
   write("mtf_through_focus", r.mtf_through_focus, [&](List& list, Index field, Index k, const MtfPoint& p) {
     if (k > 0) return;
     const std::span<const MtfPoint> points = (*r.mtf_through_focus)[field];
-    const double last = (*r.through_focus)[0].back().film_shift_mm;
-    std::vector<double> shifts;
-    for (Index film = 0; film < points.size(); ++film) shifts.push_back(last * (static_cast<double>(film) - 10) / 20);
-    list.add(at(field, "lp_per_mm", p.frequency_per_mm, "film_shift_mm", json(shifts), "tangential",
+    list.add(at(field, "lp_per_mm", p.frequency_per_mm, "film_shift_mm", json(mtf_film_shifts(r)), "tangential",
                 list_of(points, &MtfPoint::tangential), "sagittal", list_of(points, &MtfPoint::sagittal), "error",
                 p.sampling_error));
   });

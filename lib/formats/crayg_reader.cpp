@@ -25,7 +25,7 @@ constexpr const char* all_columns = "Radius, Thickness, IOR, Housing-Radius, Abb
 constexpr std::array<std::string_view, 4> sections = {"[metadata]", "[surfaces]", "[aspheric coefficients]",
                                                       "[variable distances]"};
 
-/// The texts in front of the first colon and behind it.
+/// The texts on both sides of the first colon.
 std::pair<std::string_view, std::string_view> split(std::string_view line) {
   const std::size_t colon = std::min(line.find(':'), line.size());
   return {trimmed(line.substr(0, colon)), trimmed(line.substr(std::min(colon + 1, line.size())))};

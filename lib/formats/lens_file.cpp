@@ -56,7 +56,7 @@ constexpr OtherKind other_kinds[] = {
     {"const LENS_DATA", "surfaces:", "a lens of LensVisualizer (TypeScript)", "typed as a table (data/README.md)"},
     {"const LENS_DATA", "\"surfaces\":", "a lens of LensVisualizer (TypeScript)", "typed as a table (data/README.md)"}};
 
-/// Throws Error for files that cannot be read, and names the format in which their program can export them.
+/// Throws Error for files of programs that are not read, and names a format that the program can export.
 void refuse_other_programs(std::string_view text, const std::string& where) {
   const std::string_view start = trimmed(text);
   if (start.starts_with('{') && text.find("\"optical_model\"") != std::string_view::npos) {

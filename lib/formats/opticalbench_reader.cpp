@@ -88,6 +88,7 @@ void OpticalBenchReader::read(std::string_view text) {
     positions_.names.emplace(scenarios_[i], names_[i]);
   }
   positions_.apply();
+  in_.requests.nominal_aperture = true;
   in_.lens.semi_diameters = "half of the table's diameters";
 }
 

@@ -143,7 +143,8 @@ std::vector<PageAspheres::Key> PageAspheres::keys_of(const PageLine& line, std::
 std::size_t PageAspheres::name_surfaces(const PageLine& whole) {
   PageLine line = whole;
   // "(2nd surface)", "[Aspheric data of surface 2]".
-  if (line.tokens[0].text[0] == '(' || line.tokens[0].text[0] == '[') {
+  const bool in_brackets = line.tokens[0].text[0] == '(' || line.tokens[0].text[0] == '[';
+  if (in_brackets) {
     std::ranges::replace_if(
         line.text, [](char c) { return std::string_view("()[]").find(c) != std::string_view::npos; }, ' ');
     line.tokens = tokens_of(line.text, false);
@@ -186,7 +187,7 @@ std::size_t PageAspheres::name_surfaces(const PageLine& whole) {
   if (i < t.size() && keys_of({line.number, line.text, {t[i]}}, 0, true).empty() && !key_of(t[i].text)) return 0;
   surfaces_ = std::move(found);
   columns_.clear();
-  return i;
+  return in_brackets ? whole.tokens.size() : i;
 }
 
 /// True unless a letter lacks the letter before it: "F = 3.5" below "A4 = ..." is no term.
@@ -293,9 +294,7 @@ bool PageAspheres::take(const PageLine& line, bool titled) {
   if (take_row(line)) return true;
   if (!row_.empty()) refuse_row();
   const std::size_t named = name_surfaces(line);
-  if (named > 0)
-    return named >= line.tokens.size() || line.tokens[0].text[0] == '(' || line.tokens[0].text[0] == '[' ||
-           take_values(line, named, true);
+  if (named > 0) return named == line.tokens.size() || take_values(line, named, true);
   if (take_values(line, 0, titled)) return true;
   const bool first_is_surface = is_one_of(line.tokens[0].text, "surface surf surf. s si sn m no no. i number");
   std::size_t from = first_is_surface ? 1 : 0;

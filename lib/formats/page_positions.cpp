@@ -71,7 +71,7 @@ std::vector<PageToken> with_ranges(const std::vector<PageToken>& tokens) {
       for (const std::string_view part : parts) result.push_back({std::string(part), true});
     }
   }
-  // "14.4 - 20.0 - 29.1": a dash between all numbers separates them.
+  // "14.4 - 20.0 - 29.1": dashes between all numbers are separators.
   const auto is_dash = [](const PageToken& token) { return is_one_of(token.text, "- to"); };
   const auto dashes = std::ranges::count_if(result, is_dash);
   std::size_t between = 0;
@@ -174,7 +174,7 @@ void PagePositions::put(const std::string& quantity, Values values) {
     if (!number(text))
       in_.must_be(values.line, values.name, io_detail::in_quotes(text), "a number with a decimal point");
   }
-  // "F = 4 f = 100": F is the f-number beside a focal length f.
+  // "F = 4 f = 100": F is the f-number if f is the focal length.
   const auto known_f = values_.find(quantity);
   if (quantity == "Focal Length" && known_f != values_.end() && (values.name == "F") != (known_f->second.name == "F")) {
     Values& of_f = values.name == "F" ? values : known_f->second;
@@ -185,10 +185,7 @@ void PagePositions::put(const std::string& quantity, Values values) {
   // The second block of positions begins with the distance of the object.
   if ((quantity == "d0" || quantity == "Magnification") && !values_.contains(quantity)) {
     std::size_t block = 0;
-    for (const std::string& name : gaps_) {
-      if (const auto known = values_.find(name); known != values_.end())
-        block = std::max(block, known->second.numbers.size());
-    }
+    for (const Values* row : gap_rows()) block = std::max(block, row->numbers.size());
     if (block > 1) values.numbers.insert(values.numbers.begin(), block, "undefined");
   }
   const auto [at, is_new] = values_.try_emplace(quantity, values);
@@ -292,33 +289,36 @@ void PagePositions::scale(Positions& positions, const char* from, const char* to
   positions.variables.try_emplace(to, std::move(variable));
 }
 
+/// The rows of distances that vary.
+std::vector<PagePositions::Values*> PagePositions::gap_rows() {
+  std::vector<Values*> rows;
+  for (const std::string& gap : gaps_) {
+    if (const auto at = values_.find(gap); at != values_.end()) rows.push_back(&at->second);
+  }
+  return rows;
+}
+
 /// A second block of positions may list only the distances that differ.
 void PagePositions::repeat_blocks(std::size_t& count) {
+  const std::vector<Values*> rows = gap_rows();
   std::size_t block = count;
-  for (const std::string& gap : gaps_) {
-    if (const auto at = values_.find(gap); at != values_.end()) block = std::min(block, at->second.numbers.size());
-  }
+  for (const Values* row : rows) block = std::min(block, row->numbers.size());
   if (block < 2 || block == count || count % block != 0) return;
   // A row that stands twice is no second block.
-  const auto twice = [&](const std::string& gap) {
-    const auto at = values_.find(gap);
-    if (at == values_.end()) return true;
-    const std::vector<std::string>& all = at->second.numbers;
-    return std::equal(all.begin() + static_cast<std::ptrdiff_t>(block), all.end(), all.begin());
+  const auto twice = [&](const Values* row) {
+    return std::equal(row->numbers.begin() + static_cast<std::ptrdiff_t>(block), row->numbers.end(),
+                      row->numbers.begin());
   };
-  if (std::ranges::all_of(gaps_, twice)) {
-    for (const std::string& gap : gaps_) {
-      if (const auto at = values_.find(gap); at != values_.end()) at->second.numbers.resize(block);
-    }
+  if (std::ranges::all_of(rows, twice)) {
+    for (Values* row : rows) row->numbers.resize(block);
     count = block;
     return;
   }
-  for (const std::string& gap : gaps_) {
-    const auto at = values_.find(gap);
-    if (at == values_.end() || at->second.numbers.size() != block) continue;
-    auto& [line, name, numbers] = at->second;
-    in_.warn(line, name, "has " + std::to_string(block) + " values; they are repeated for the other positions");
-    for (std::size_t i = 0; numbers.size() < count; ++i) numbers.push_back(std::string(numbers[i]));
+  for (Values* row : rows) {
+    if (row->numbers.size() != block) continue;
+    in_.warn(row->line, row->name,
+             "has " + std::to_string(block) + " values; they are repeated for the other positions");
+    for (std::size_t i = 0; row->numbers.size() < count; ++i) row->numbers.push_back(std::string(row->numbers[i]));
   }
 }
 

@@ -38,6 +38,7 @@ class PagePositions {
   bool take_names(const PageLine& line);
   bool take_columns(const PageLine& line);
   bool take_row(const PageLine& line);
+  std::vector<Values*> gap_rows();
   void repeat_blocks(std::size_t& count);
   void put(const std::string& quantity, Values values);
   void scale(Positions& positions, const char* from, const char* to, double factor);

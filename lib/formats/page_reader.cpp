@@ -107,19 +107,19 @@ void PageReader::choose() {
     append(list, ", ", std::to_string(i + 1) + " in line " + std::to_string(title.number));
   }
   if (all.empty()) throw Error(in_.where() + ": no table of surfaces; must be a table of radius, thickness and index");
-  if (all.size() > 1 && in_.entry().empty()) {
+  several_ = all.size() > 1;
+  if (several_ && in_.entry().empty()) {
     throw Error(in_.where() + ": the page has " + std::to_string(all.size()) + " tables of lenses: " + list +
                 "; must be chosen (--embodiment N)");
   }
   const bool exists =
       wanted && *wanted >= 1 && *wanted <= static_cast<double>(all.size()) && *wanted == std::floor(*wanted);
-  if (all.size() > 1 && !exists) {
+  if (several_ && !exists) {
     throw Error(in_.where() + ": embodiment = " + in_quotes(in_.entry()) + "; must be a number of a table: " + list);
   }
   const Embodiment& chosen = all[exists ? static_cast<std::size_t>(*wanted) - 1 : 0];
   lines_ = lines_.subspan(chosen.first, chosen.last - chosen.first);
-  if (all.size() > 1) in_.lens.imported->entry = in_.entry();
-  several_ = all.size() > 1;
+  if (several_) in_.lens.imported->entry = in_.entry();
 }
 
 /// Opens the section that a title names; false for other lines.
@@ -159,8 +159,7 @@ void PageReader::skip(const PageLine& line) {
   value = value || (line.numbers() > 0 && line.says("conic coefficient") && line.says("="));
   // "Exit pupil position 20.1 30.2", "3 4" at the top of a page.
   const auto is_word = [](const PageToken& x) {
-    return std::ranges::count_if(x.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }) > 2 &&
-           x.text.find_first_of("0123456789") == x.text.npos && !is_plane_word(x.text);
+    return letters_in(x.text) > 2 && x.text.find_first_of("0123456789") == x.text.npos && !is_plane_word(x.text);
   };
   const bool named = is_word(t[0]) && (section_ == Section::positions || (t.size() > 1 && is_word(t[1])));
   const bool condition =
@@ -283,11 +282,7 @@ void PageReader::build() {
     }
     positions_.rows.push_back(row);
   }
-  const auto apertures = in_.lens.semi_diameters;
-  const bool likely = in_.requests.nominal_aperture;
   positions_.apply();
-  in_.lens.semi_diameters = apertures;
-  in_.requests.nominal_aperture = likely;
   if (in_.lens.focal_length_mm) {
     in_.requests.focal_length = {at("Focal Length")->line, "f", *in_.lens.focal_length_mm, false, true};
   } else {
@@ -328,7 +323,7 @@ bool is_page(std::string_view text) {
     if (table.is_other_row(line)) return true;
     const std::string_view first = line.tokens.front().text;
     const bool value = std::ranges::any_of(line.tokens, [](const PageToken& t) { return t.text == "="; });
-    const bool letter = (lower(first[0]) >= 'a' && lower(first[0]) <= 'z') || first[0] == '(';
+    const bool letter = letters_in(first.substr(0, 1)) > 0 || first[0] == '(';
     const bool has_word = letter && !is_plane_word(first) && !is_stop_word(first) && !is_asphere_mark(first) &&
                           !label_of(first) && !is_one_of(first, "S film sensor");
     const bool focal_length = line.numbers() > 0 && (line.says("focal") || is_one_of(first, "f fno efl"));

@@ -45,6 +45,11 @@ std::pair<std::optional<int>, std::string_view> label_and_mark(std::string_view 
   return {bracket > 0 ? label_of(word.substr(0, bracket)) : std::nullopt, word.substr(bracket)};
 }
 
+/// True for the name of a lens or a group: "L1", "G2".
+bool is_element(std::string_view word) {
+  return word.size() > 1 && (word[0] == 'L' || word[0] == 'G') && label_of(word.substr(1));
+}
+
 /// A mark of the stop or of an asphere: "(aperture stop)", "STO", "*", "(ASP)"; also other text in brackets.
 struct Mark {
   bool is_mark = false, stop = false, asphere = false;
@@ -52,10 +57,9 @@ struct Mark {
 
 Mark mark_in(std::string_view word) {
   const bool in_brackets = word.size() > 2 && word.starts_with('(') && word.ends_with(')');
-  const bool element = word.size() > 1 && (word[0] == 'L' || word[0] == 'G') && label_of(word.substr(1));
   const std::string inner = lower(in_brackets ? word.substr(1, word.size() - 2) : word);
   const auto contains = [&](std::string_view part) { return inner.find(part) != std::string::npos; };
-  Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || element ||
+  Mark mark{.is_mark = in_brackets || is_stop_word(word) || is_asphere_mark(word) || is_element(word) ||
                        is_one_of(word, "fs f.s. fc cg st sp blende")};
   if (!mark.is_mark || contains("variable") || contains("flare") || !variable_name(inner).empty()) {
     mark.is_mark = mark.is_mark && contains("flare");
@@ -144,15 +148,12 @@ std::string variable_name(std::string_view word) {
 std::vector<TableColumn> surface_columns(const PageLine& line) {
   // Lines with numbers or values are no heads, unless the head names its columns' lines: "n(587.6)".
   if (line.numbers() > 1 || line.tokens.size() < 3) return {};
-  std::vector<TableColumn> best;
   for (const char separator : {'\t', '|', ';', ',', ' '}) {
     std::vector<std::string_view> heads;
-    std::vector<PageToken> cells = separator == ' ' ? line.tokens : divided(line.text, separator);
-    // "\u03b8g, F" is one head.
-    std::erase_if(cells, [&](const PageToken& cell) {
-      return &cell != cells.data() && is_one_of(cell.text, "F Fj") && (&cell - 1)->text.starts_with("\u03b8");
-    });
+    const std::vector<PageToken> cells = separator == ' ' ? line.tokens : divided(line.text, separator);
     for (const PageToken& cell : cells) {
+      // "\u03b8g, F" is one head.
+      if (!heads.empty() && heads.back().starts_with("\u03b8") && is_one_of(cell.text, "F Fj")) continue;
       if (cell.text != "-" && cell.text != "=") heads.push_back(cell.text);
     }
     if (separator != ' ' && heads.size() < 3) continue;
@@ -164,7 +165,7 @@ std::vector<TableColumn> surface_columns(const PageLine& line) {
                           has({Column::index, Column::glass});
     if (surfaces) return columns;
   }
-  return best;
+  return {};
 }
 
 std::size_t PageTable::find(Column kind) const {
@@ -263,16 +264,14 @@ std::vector<PageToken> PageTable::row_tokens(const PageLine& line) const {
     t[0] = t[1];
     t[1] = {"(stop)"};
   }
-  const std::string& first = t[0].text;
-  const bool element = (first[0] == 'L' || first[0] == 'G') && first.size() > 1 && label_of(first.substr(1));
-  if (element && t.size() > 2 && label_of(t[1].text)) t.erase(t.begin());
+  if (is_element(t[0].text) && t.size() > 2 && label_of(t[1].text)) t.erase(t.begin());
   if (!label_of(t[0].text)) return t;
   if (t.size() > 1 && t[1].text == "=") t.erase(t.begin() + 1);
   const auto is_name = [](const PageToken& token) {
-    const auto letters = std::ranges::count_if(token.text, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; });
-    return letters > 2 && !is_plane_word(token.text) && !is_stop_word(token.text) && !is_asphere_mark(token.text) &&
-           !is_image(token.text) && variable_name(token.text).empty() && token.text.find('(') == std::string::npos &&
-           token.text.find('*') == std::string::npos && lower(token.text).find("variable") == std::string::npos;
+    return letters_in(token.text) > 2 && !is_plane_word(token.text) && !is_stop_word(token.text) &&
+           !is_asphere_mark(token.text) && !is_image(token.text) && variable_name(token.text).empty() &&
+           token.text.find('(') == std::string::npos && token.text.find('*') == std::string::npos &&
+           lower(token.text).find("variable") == std::string::npos;
   };
   while (t.size() > 2 && is_name(t[1])) {
     const bool lens = same(t[1].text, "lens") && label_of(t[2].text);
@@ -598,11 +597,11 @@ std::vector<TableLine> PageTable::lines() const {
   for (const TableColumn& column : columns_) lines[0].cells.push_back(column.name);
   for (const PageRow& row : rows_) {
     TableLine& line = lines.emplace_back(TableLine{row.line, {row.stop.empty() ? "-" : "stop"}, {}});
-    const auto has_medium = [&](std::size_t i) {
-      return (columns_[i].kind == Column::index || columns_[i].kind == Column::glass) && !is_none(row.cells[i].text);
+    const auto states = [&](Column kind) {
+      const std::size_t i = find(kind);
+      return i < columns_.size() && !is_none(row.cells[i].text);
     };
-    bool air = true;
-    for (std::size_t i = 0; i < columns_.size(); ++i) air = air && !has_medium(i);
+    const bool air = !states(Column::index) && !states(Column::glass);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::string& cell = row.cells[i].text;
       const bool index = columns_[i].kind == Column::index;

@@ -58,7 +58,7 @@ class PageTable {
   const std::vector<TableColumn>& columns() const { return columns_; }
   const std::vector<PageRow>& rows() const { return rows_; }
   PageRow* find(int label);
-  /// Distance of the object, if a row with the label 0 states it.
+  /// Distance of the object, stated by a row with the label 0.
   std::optional<double> object_distance() const { return object_distance_; }
   /// Fills the cells that air has not: an air row has neither index nor V-number.
   /// @throws Error for a row that has not the cells of the columns

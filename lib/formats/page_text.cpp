@@ -184,6 +184,11 @@ class NumberScan {
 
 }  // namespace
 
+std::size_t letters_in(std::string_view word) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(word, [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }));
+}
+
 bool is_meant_as_number(std::string_view word) {
   return std::ranges::any_of(word, is_digit) && word.find_first_not_of("0123456789.,+-OolI") == std::string_view::npos;
 }

@@ -33,6 +33,9 @@ std::vector<PageLine> page_lines(std::string_view text);
 /// The tokens of a text.
 std::vector<PageToken> tokens_of(std::string_view text, bool decimal_commas);
 
+/// The number of ASCII letters of a word.
+std::size_t letters_in(std::string_view word);
+
 /// True for a number, and for a word of digits and letters that are mistaken for digits (O, l, I): "1O.5".
 bool is_meant_as_number(std::string_view word);
 

@@ -113,7 +113,6 @@ void Positions::declare(std::size_t column) {
   const auto focal_length = value("Focal Length", column), field = positive(value("Angle of View", column));
   if (focal_length && std::isfinite(*focal_length)) lens.focal_length_mm = focal_length;
   lens.f_number = positive(value("F-Number", column));
-  in_.requests.nominal_aperture = true;
   lens.image_diagonal_mm = positive(value("Image Height", column));
   if (lens.f_number) {
     lens.design.aperture = {ApertureSetting::f_number, *lens.f_number};

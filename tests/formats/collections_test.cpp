@@ -157,7 +157,7 @@ TEST(DeepLens, HasTheRowsOfALensInData) {
   EXPECT_NEAR(focal_length(p), focal_length(lens), 1e-9);
 }
 
-/// Half of a phone lens, as earlier versions of DeepLens write it.
+/// Half of a phone lens, in the form of earlier versions of DeepLens.
 const std::string deeplens = R"({"foclen": 5.0, "fnum": 2.5, "d_sensor": 6.0, "surfaces": [
   {"type": "Stop", "r": 1.0, "c": 0.0, "d": 0.0, "mat1": "air", "mat2": "occluder", "d_next": 0.1},
   {"type": "Aspheric", "r": 1.5, "c": 0.4, "d": 0.1, "k": -1.5, "ai": [0.0, 1e-3, -2e-4], "mat2": "okp4", "ai4": 1e-3,

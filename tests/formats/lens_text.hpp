@@ -11,10 +11,12 @@
 
 namespace petzval::testing {
 
-inline Prescription read(const std::string& text) { return parse_lens(text, "x"); }
+inline Prescription read(const std::string& text, const std::string& entry = {}) {
+  return parse_lens(text, "x", {.entry = entry});
+}
 
-inline std::string refusal(const std::string& text) {
-  return message([&] { read(text); });
+inline std::string refusal(const std::string& text, const std::string& entry = {}) {
+  return message([&] { read(text, entry); });
 }
 
 /// The message of the warning about a command; "no warning" without a warning.

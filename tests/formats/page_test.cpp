@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "lens_text.hpp"
 #include "petzval/core/files.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "said.hpp"
 
 namespace petzval::testing {
 namespace {
@@ -56,19 +56,6 @@ std::string page(const std::string& name) {
   return read_file(std::filesystem::path(PETZVAL_TEST_SAMPLES) / "pages" / (name + ".txt"), "a page");
 }
 
-Prescription read_page(const std::string& text, const std::string& entry = {}) {
-  return parse_lens(text, "x", {.entry = entry});
-}
-
-std::string refused_page(const std::string& text, const std::string& entry = {}) {
-  try {
-    read_page(text, entry);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
 /// The first difference of two lenses beyond the digits of a page; empty if they are equal. Distances of a table of
 /// glass names may differ in V_d.
 std::string difference(const Prescription& a, const Prescription& b, double vd_tolerance = 1e-6) {
@@ -107,7 +94,7 @@ class PageOf : public ::testing::TestWithParam<Page> {};
 
 TEST_P(PageOf, ItsStyleIsReadAsItsLens) {
   const Page& p = GetParam();
-  const Prescription lens = read_page(page(p.file)), truth = data_prescription(p.lens);
+  const Prescription lens = read(page(p.file)), truth = data_prescription(p.lens);
   EXPECT_EQ(difference(lens, truth, 2e-3), "");
   const double f = first_order(compile(lens)).effective_focal_length;
   EXPECT_NEAR(f / truth.focal_length_mm.value_or(f), 1, 0.02);
@@ -123,7 +110,7 @@ TEST_P(PageOf, ItsStyleIsReadAsItsLens) {
 }
 
 TEST(Page, PositionsHaveNamesAndDeclaredData) {
-  const Prescription zoom = read_page(page("canon_zoom")), truth = data_prescription("zoom_14-30mm_f4");
+  const Prescription zoom = read(page("canon_zoom")), truth = data_prescription("zoom_14-30mm_f4");
   ASSERT_EQ(zoom.configurations.size(), 3u);
   EXPECT_EQ(zoom.configurations[0].name, "wide");
   EXPECT_EQ(zoom.configurations[2].name, "tele");
@@ -136,16 +123,16 @@ TEST(Page, PositionsHaveNamesAndDeclaredData) {
 
 TEST(Page, AnglesOfViewAreHalvedIfTheImageHeightSaysSo) {
   const std::string zoom = with(page("canon_zoom"), "Half angle of view", "Angle of view");
-  EXPECT_DOUBLE_EQ(read_page(zoom).half_field_deg.value(), read_page(page("canon_zoom")).half_field_deg.value());
+  EXPECT_DOUBLE_EQ(read(zoom).half_field_deg.value(), read(page("canon_zoom")).half_field_deg.value());
 }
 
 TEST(Page, EmbodimentsAreChosenByNumber) {
   const std::string two = page("canon_old") + '\n' + with(page("pentax_old"), "EXAMPLE 1", "EXAMPLE 2");
   const auto second = std::to_string(std::ranges::count(page("canon_old"), '\n') + 2);
-  expect_tokens(refused_page(two), {"x", 2, "line", second, "embodiment"});
-  expect_tokens(refused_page(two, "3"), {"embodiment", "3", second});
-  EXPECT_EQ(difference(read_page(two, "1"), read_page(page("canon_old"))), "");
-  EXPECT_EQ(difference(read_page(two, "2"), read_page(page("pentax_old"))), "");
+  expect_tokens(refusal(two), {"x", 2, "line", second, "embodiment"});
+  expect_tokens(refusal(two, "3"), {"embodiment", "3", second});
+  EXPECT_EQ(difference(read(two, "1"), read(page("canon_old"))), "");
+  EXPECT_EQ(difference(read(two, "2"), read(page("pentax_old"))), "");
 }
 
 /// A small lens as a page: each line may be replaced.
@@ -153,7 +140,7 @@ const std::string small =
     "Example 1\nf = 52.4\nNo. r d nd vd\n1* 60.0 5.0 1.5168 64.2\n2 -48.0 1.0\n3 (stop) inf 47.5\n"
     "Aspherical data\nSurface 1\nK = 0.5 A4 = 1.0E-06 A6 = 2.0E-09\n";
 
-double conic(const std::string& text) { return read_page(text).surfaces[0].conic; }
+double conic(const std::string& text) { return read(text).surfaces[0].conic; }
 
 TEST(Page, ConicsOfSpheresAre0Or1ByTheirName) {
   EXPECT_DOUBLE_EQ(conic(small), 0.5);
@@ -170,7 +157,7 @@ TEST(Page, TermsHaveTheOrdersOfTheirNamesOrOfTheFormula) {
   const auto orders = [](const std::string& terms, const std::string& formula = "") {
     const std::string text = with(small, "A4 = 1.0E-06 A6 = 2.0E-09", terms);
     std::vector<int> result;
-    const Prescription lens = read_page(with(text, "Aspherical data\n", "Aspherical data\n" + formula));
+    const Prescription lens = read(with(text, "Aspherical data\n", "Aspherical data\n" + formula));
     for (const AsphereTerm& t : lens.surfaces[0].aspheric) {
       result.push_back(t.order);
     }
@@ -188,24 +175,24 @@ TEST(Page, TermsHaveTheOrdersOfTheirNamesOrOfTheFormula) {
 TEST(Page, PowersOfTenAreReadInEachPrintedForm) {
   for (const char* power : {"1.2345E-06", "1.2345e-6", "1.2345 E - 06", "1.2345D-06", "1.2345-6", "1.2345\u00d710-6",
                             "1.2345 \u00d7 10\u207b\u2076", "1.2345x10^-6", ".12345\u00d710\u22125"}) {
-    const Prescription lens = read_page(with(small, "1.0E-06", power));
+    const Prescription lens = read(with(small, "1.0E-06", power));
     ASSERT_EQ(lens.surfaces[0].aspheric.size(), 2u) << power;
     EXPECT_NEAR(lens.surfaces[0].aspheric[0].coefficient, 1.2345e-6, 1e-15) << power;
   }
 }
 
 TEST(Page, AsphericDataMayBeATableOfRowsOrOfColumns) {
-  const Prescription lens = read_page(small);
+  const Prescription lens = read(small);
   const std::string start = small.substr(0, small.find("Surface 1"));
-  EXPECT_EQ(difference(read_page(start + "Surface K A4 A6\n1 0.5 1E-6 2E-9\n"), lens), "");
-  EXPECT_EQ(difference(read_page(start + "Surface K A4\n1 0.5 1E-6\nSurface A6\n1 2E-9\n"), lens), "");
-  EXPECT_EQ(difference(read_page(start + "Surface No. 1\nK 0.5\nA4 1E-6\nA6 2E-9\n"), lens), "");
-  EXPECT_EQ(difference(read_page(start + "1st surface\nK: 0.5, A4: 1E-6, A6: 2E-9\n"), lens), "");
-  EXPECT_EQ(difference(read_page(start + "r1:\nK = 0.5\nA4 = 1E-6\nA6 = 2E-9\n"), lens), "");
+  EXPECT_EQ(difference(read(start + "Surface K A4 A6\n1 0.5 1E-6 2E-9\n"), lens), "");
+  EXPECT_EQ(difference(read(start + "Surface K A4\n1 0.5 1E-6\nSurface A6\n1 2E-9\n"), lens), "");
+  EXPECT_EQ(difference(read(start + "Surface No. 1\nK 0.5\nA4 1E-6\nA6 2E-9\n"), lens), "");
+  EXPECT_EQ(difference(read(start + "1st surface\nK: 0.5, A4: 1E-6, A6: 2E-9\n"), lens), "");
+  EXPECT_EQ(difference(read(start + "r1:\nK = 0.5\nA4 = 1E-6\nA6 = 2E-9\n"), lens), "");
 }
 
 TEST(Page, LinesMayBePrintedInOtherForms) {
-  const Prescription lens = read_page(small);
+  const Prescription lens = read(small);
   const std::pair<const char*, const char*> forms[] = {
       {"f = 52.4", "f = 52.4mm"},
       {"f = 52.4", "Unit mm\nF = 52.4"},
@@ -242,11 +229,11 @@ TEST(Page, LinesMayBePrintedInOtherForms) {
   for (const auto& [old, form] : forms) {
     const std::string text = with(small, old, form);
     SCOPED_TRACE(form);
-    if (const std::string refusal = refused_page(text); refusal != "no error") {
-      ADD_FAILURE() << refusal;
+    if (const std::string found = refusal(text); found != "no error") {
+      ADD_FAILURE() << found;
       continue;
     }
-    EXPECT_EQ(difference(read_page(text), lens), "");
+    EXPECT_EQ(difference(read(text), lens), "");
   }
 }
 
@@ -258,7 +245,7 @@ TEST(Page, ConicsFollowTheFormula) {
         -0.5);
   }
   const std::string text = with(small, "A4 = 1.0E-06 A6 = 2.0E-09", "A2 = 1E-06 A3 = 2E-09");
-  const Prescription lens = read_page(with(text, "Aspherical data\n", "Aspherical data\nX = ch2/2+A2h4+A3h6\n"));
+  const Prescription lens = read(with(text, "Aspherical data\n", "Aspherical data\nX = ch2/2+A2h4+A3h6\n"));
   EXPECT_EQ(lens.surfaces[0].aspheric, (std::vector<AsphereTerm>{{4, 1e-6}, {6, 2e-9}}));
 }
 
@@ -268,42 +255,42 @@ const std::string zoom =
     "r4 = -80 d4 = 20\n";
 
 TEST(Page, PositionsMayBePrintedInOtherForms) {
-  const Prescription truth = read_page(zoom + "d2 5 10\n");
+  const Prescription truth = read(zoom + "d2 5 10\n");
   ASSERT_EQ(truth.configurations.size(), 2u);
   EXPECT_TRUE(truth.surfaces[2].stop);
   for (const char* form : {"d2 = 5~10\n", "d2 = 5 to 10\n", "d2 = 5 - 10\n", "d2 = 5, 10\n", "Wide Tele\nD2 5 10\n",
                            "Position Focal length d2\nWide 31.9 5\nTele 33.3 10\n"}) {
     SCOPED_TRACE(form);
-    ASSERT_EQ(refused_page(zoom + form), "no error");
-    EXPECT_EQ(difference(read_page(zoom + form), truth), "");
+    ASSERT_EQ(refusal(zoom + form), "no error");
+    EXPECT_EQ(difference(read(zoom + form), truth), "");
   }
-  EXPECT_EQ(difference(read_page(with(zoom, "d2 = variable", "d2 = 5~10")), truth), "");
-  const Prescription close = read_page(zoom + "d2 5 10\nClose\nd0 300 300\nd2 6 12\n");
+  EXPECT_EQ(difference(read(with(zoom, "d2 = variable", "d2 = 5~10")), truth), "");
+  const Prescription close = read(zoom + "d2 5 10\nClose\nd0 300 300\nd2 6 12\n");
   EXPECT_EQ(close.configurations.size(), 4u);
   EXPECT_DOUBLE_EQ(close.configurations[3].subject_distance_mm.value(), 300);
 }
 
 TEST(Page, FaultsAreRefusedWithLineAndCell) {
-  expect_tokens(refused_page(with(small, "60.0", "6O.0")), {"x:4", "\"6O.0\""});
-  expect_tokens(refused_page(with(small, "1.5168", "l.5168")), {"x:4", "\"l.5168\""});
-  expect_tokens(refused_page(with(small, "-48.0", "48.0")), {"line 2", 52.4, 48, "line 5"});
-  expect_tokens(refused_page(with(small, "f = 52.4", "f = 55")), {"line 2", 55});
-  expect_tokens(refused_page(with(small, "1.0E-06", "1.0E06")), {"x:9", "A4"});
-  expect_tokens(refused_page(with(small, "1.0E-06", "1.0E-O6")), {"x:9"});
-  expect_tokens(refused_page(with(small, "Surface 1", "Surface 7")), {"x:9", 7});
-  expect_tokens(refused_page(with(small, "Surface 1", "Surface 2")), {"x:4", "asphere"});
-  expect_tokens(refused_page(with(small, "K = 0.5", "K = 0.5 K = 0.6")), {"x:9", "K"});
-  expect_tokens(refused_page(with(small, "2 -48.0 1.0\n", "")), {"x:5"});
-  expect_tokens(refused_page(with(small, " 64.2", "")), {"x:4"});
-  expect_tokens(refused_page(with(small, "-48.0 1.0", "-48.0 d2")), {"x:5", "thickness", "\"d2\""});
-  expect_tokens(refused_page(small + "Various data\n1.0 2.0 3.0\n"), {"x:11"});
-  expect_tokens(refused_page(small + "SC = 0.5\n"), {"x:10"});
-  EXPECT_NE(refused_page(with(small, "1* 60.0 5.0 1.5168 64.2\n", "")), "no error");
-  expect_tokens(refused_page(with(small, "1.5168 64.2", "")), {"x:4", "index"});
+  expect_tokens(refusal(with(small, "60.0", "6O.0")), {"x:4", "\"6O.0\""});
+  expect_tokens(refusal(with(small, "1.5168", "l.5168")), {"x:4", "\"l.5168\""});
+  expect_tokens(refusal(with(small, "-48.0", "48.0")), {"line 2", 52.4, 48, "line 5"});
+  expect_tokens(refusal(with(small, "f = 52.4", "f = 55")), {"line 2", 55});
+  expect_tokens(refusal(with(small, "1.0E-06", "1.0E06")), {"x:9", "A4"});
+  expect_tokens(refusal(with(small, "1.0E-06", "1.0E-O6")), {"x:9"});
+  expect_tokens(refusal(with(small, "Surface 1", "Surface 7")), {"x:9", 7});
+  expect_tokens(refusal(with(small, "Surface 1", "Surface 2")), {"x:4", "asphere"});
+  expect_tokens(refusal(with(small, "K = 0.5", "K = 0.5 K = 0.6")), {"x:9", "K"});
+  expect_tokens(refusal(with(small, "2 -48.0 1.0\n", "")), {"x:5"});
+  expect_tokens(refusal(with(small, " 64.2", "")), {"x:4"});
+  expect_tokens(refusal(with(small, "-48.0 1.0", "-48.0 d2")), {"x:5", "thickness", "\"d2\""});
+  expect_tokens(refusal(small + "Various data\n1.0 2.0 3.0\n"), {"x:11"});
+  expect_tokens(refusal(small + "SC = 0.5\n"), {"x:10"});
+  EXPECT_NE(refusal(with(small, "1* 60.0 5.0 1.5168 64.2\n", "")), "no error");
+  expect_tokens(refusal(with(small, "1.5168 64.2", "")), {"x:4", "index"});
   // A line behind a clean table is no row.
   const std::string clean = "No. r d nd vd\n1 60.0 5.0 1.5168 64.2\n2 -48.0 47\n";
-  EXPECT_EQ(read_page(clean + "f 52.4\n").surfaces.size(), 2u);
-  EXPECT_EQ(refused_page("Focal length 70\n" + clean).find("no error"), std::string::npos);
+  EXPECT_EQ(read(clean + "f 52.4\n").surfaces.size(), 2u);
+  EXPECT_EQ(refusal("Focal length 70\n" + clean).find("no error"), std::string::npos);
 }
 
 /// A change of a page: moves nothing, or takes or damages one number.
@@ -404,7 +391,7 @@ class Mutator {
 
 TEST_P(PageOf, MutationsAreReadRightOrRefusedByLine) {
   const std::string style = GetParam().file, text = page(style);
-  const Prescription truth = read_page(text);
+  const Prescription truth = read(text);
   Mutator mutate(7);
   int read_right = 0, refused = 0;
   for (int i = 0; i < 84; ++i) {
@@ -416,7 +403,7 @@ TEST_P(PageOf, MutationsAreReadRightOrRefusedByLine) {
     const std::string changed = mutate(text, change);
     const std::string trace = "mutation " + std::to_string(i);
     try {
-      EXPECT_EQ(difference(read_page(changed), truth), "") << trace << "\n" << changed;
+      EXPECT_EQ(difference(read(changed), truth), "") << trace << "\n" << changed;
       ++read_right;
     } catch (const Error& e) {
       const std::string message = e.what();

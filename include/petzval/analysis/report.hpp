@@ -80,8 +80,7 @@ struct LensReport {
   Quantity<std::vector<MtfChart>> mtf_chart = {};
   /// [field][film]: five films, two through_focus_step() to both sides; empty if the spots have no focus.
   Quantity<Grid<ThroughFocusSpot>> through_focus = {};
-  /// [field][film]: diffraction_mtf() at 30 per mm on 21 films with equal distances between the second and the
-  /// fourth film of `through_focus`; empty if the spots have no focus.
+  /// [field][film]: diffraction_mtf() at 30 per mm on films at mtf_film_shifts(); empty if the spots have no focus.
   Quantity<Grid<MtfPoint>> mtf_through_focus = {};
   Quantity<Grid<EncircledEnergy>> encircled_energy = {};       ///< [field][fraction]: of 0.5, 0.8, 0.9 and 0.95
   Quantity<Grid<AxialRayFocus>> longitudinal_aberration = {};  ///< [wavelength][position on the stop]
@@ -97,6 +96,10 @@ struct LensReport {
 /// @throws Error  if `threads` is below 1, a field is not finite, a weight is negative or not finite, or the number of
 ///                weights differs from the number of compiled wavelengths
 PETZVAL_API LensReport lens_report(const Lens& lens, LensReport::Conditions conditions = {});
+
+/// The films of LensReport::mtf_through_focus as shifts towards +z (mm): 21 films with equal distances between the
+/// second and the fourth film of `through_focus`; empty without such films.
+PETZVAL_API std::vector<double> mtf_film_shifts(const LensReport& report);
 
 /// The report as a JSON object. lib/docs/reports.md lists its keys; `failures` has the reasons for `seidel`,
 /// `paraxial_rays` and quantities by exact rays from `ray_fans` on that have no value. Infinite numbers are null.
